@@ -142,6 +142,7 @@ class Predicate:
     adverbs: tuple[str, ...] = ()  # 'directly', 'right', 'slightly', 'usually'
     positive: bool = True
     reversed: bool = False
+    of_one: bool = False  # of a thing that 'it' stands for: 'with a knife across it'
     viewpoint: Viewpoint | None = None  # 'to your left', 'to the chair's left'; see also Sentence.viewpoint
 
 

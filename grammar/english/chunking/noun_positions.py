@@ -265,7 +265,22 @@ class NounFinder:
             "on",
         ):
             return norm == "left" and self.norms[at + 1] == "on"
-        return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at)
+        return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at) or self.is_participle_of_one(at)
+
+    def is_participle_of_one(self, at: int) -> bool:
+        """Return True for an unknown participle before *one* or *ones*: *unfired ones*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            False for a participle before any other word.
+        """
+        return self.norms[at].endswith("ed") and self.norms[at + 1] in ("one", "ones")
 
     def adjective_before_noun(self, at: int) -> bool:
         """Return True if the word is an adjective with a noun after it: *near edge*, *left lamp*.
@@ -412,6 +427,9 @@ class NounFinder:
         if form.form == "s" and before in PUT_VERBS and commanded and self._nouns.singular(norm)[1]:
             return True  # 'keep drinks away from it'
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
+        stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
+        if stands and before in PLACE_NOUNS:
+            return False  # 'in the middle stands the crucifix'
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
         accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
@@ -419,7 +437,7 @@ class NounFinder:
             return True  # 'with the cotton rolls behind it'
         first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
-            first > 1 and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
+            first > 1 and not self.is_determiner(at - 1) and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
             and form.kind in ("posture", "lean") and self._predicate_follows(at)
             and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
         ):  # fmt: skip

@@ -329,7 +329,7 @@ class VerbChunker(RelatorChunker):
             return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
         if norm == "open" and self._previous() == "VERB":
             return None  # 'stands open on the sideboard'
-        if norm in ("set", "put") and self._previous() == "BE":
+        if norm in ("set", "put", "spread") and self._previous() == "BE":
             return Chunk("PART", at, end, found)
         if form.form == "base":
             subject = self._previous()
@@ -476,6 +476,8 @@ class VerbChunker(RelatorChunker):
         """Return the participle of a verb that no table holds: *the window shrouded in fog*."""
         norm = self.norms[i]
         previous = self._previous()
+        if self.nouns.is_participle_of_one(i):
+            return None
         if previous == "ADVERB" and len(self.chunks) > 1 and self.chunks[-2].type in ("COMMA", "BE"):
             previous = self.chunks[-2].type  # 'a loaf, perfectly preserved'
         if (

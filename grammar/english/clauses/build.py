@@ -272,6 +272,10 @@ class Builder(Transformer[Any, Built]):
             return Noun(_restricted(noun, mods))
         if is_place(noun) and not noun.predicates:
             return _place_with(noun, tuple(mods))
+        outer = tuple(p for p in mods if p.of_one) if noun.plural else ()
+        if outer:  # 'the plate above the forks with a knife across it'
+            mods = tuple(p for p in mods if not p.of_one)
+            return Noun(_restricted(noun, mods) if mods else noun, outer)
         return Noun(_restricted(noun, mods))
 
     def noun(self, chunk: Chunk) -> NounPhrase:

@@ -354,6 +354,8 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
         return []
     for predicate in member.predicates:
         if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
+            one = any(argument.pronoun == "it" and not argument.head for argument in predicate.arguments)
+            predicate = replace(predicate, of_one=one)
             found.append((predicate, True))
         elif any(_is_of_it(argument) for argument in predicate.arguments):
             found.append((predicate, True))  # 'a plate with a knife across its edge'

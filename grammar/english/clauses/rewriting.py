@@ -689,6 +689,8 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
                 first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
                 clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
             objects = sum(kind in ("PREP", "TPART", "OF") for kind in clause)
+            amid = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found[first:])
+            objects += amid and sum(chunk.type == "AND" for chunk in found[first:])
             places = clause[:1] in (["PREP"], ["ADV"]) and clause.count("NP") == objects
             if places and not (FINITE & set(clause)):
                 if lay:

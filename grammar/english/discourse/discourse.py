@@ -127,7 +127,7 @@ class Discourse(Statements):
                 for predicate in part.predicates:  # 'shells, front left, hollow side down'
                     self._predicate(subject, predicate, [])
                 continue
-            if part.pronoun == "one" and subject is not None and subject.members:
+            if part.pronoun == "one" and subject is not None and subject.members and not part.adjectives:
                 self._one_each(subject, part)
                 continue
             if _can_be_verb(part):

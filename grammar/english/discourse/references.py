@@ -115,6 +115,7 @@ class References:
     sentence: int = 0
     start: int = 0  # of the sentence in the text
     text: str = ""
+    holder: str | None = None  # relation of the phrase whose restrictions are read: 'in' for 'in the crate beside it'
     lost: list[Span] = field(default_factory=list)  # of the sentence, phrases that were not understood
     surface: Entity | None = None
     named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
@@ -593,6 +594,10 @@ class References:
         if (further or (second and group is None)) and phrase.of is None and (last := self._last_thing(besides)):
             return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)  # 'on it, a smaller one'
         if group is None or not group.members:
+            many = self.recent[0].subject if self.recent and relation is None else None
+            bare = phrase.pronoun == "one" and phrase.determiner is None and not phrase.adjectives
+            if bare and many is not None and many.plural and not phrase.predicates:
+                return many  # 'fold the napkins and tuck one under each fork'
             return self._another_one(phrase, besides, relation)
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
@@ -648,6 +653,9 @@ class References:
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
         last = self.recent[0] if self.recent else None
+        if last is not None and self.holder in ("inside", "on") and last.relation == self.holder and relation != "under":
+            if last.sentence == self.sentence and last.others and last.subject is not besides:
+                return last.others[0]  # 'cans go in the box, glass in the crate beside it'
         if (
             besides is not None and last is not None and relation in OPPOSITES and last.others
             and OPPOSITES[relation] == last.relation and last.subject is not besides
