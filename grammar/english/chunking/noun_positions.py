@@ -367,6 +367,7 @@ class NounFinder:
             if norm.endswith("ing") and len(norm) > 5 and not after_determiner:
                 return (
                     self._compound_ing(at, before, after)
+                    or after in IS_FORMS
                     or (self._nounish(at + 1) and after not in PLACE_NOUNS)
                     or (before in ("with", "of") and not self.starts(at + 1))
                 )

@@ -53,7 +53,8 @@ def possible_verbs(chunks: list[Chunk], words: list[Word], nouns: KnownNouns) ->
             if at > chunk.start and chunk.type == "NP":
                 told_apart = at == chunk.start + 2 and norms[chunk.start] == "the" and is_adjective(norms[at - 1])
                 third = form is not None and form.form == "s"  # 'the leftmost holds sand'
-                agrees = _agrees(norms[at - 1], norm, form is not None and form.form, nouns)
+                inner = before in ("WITH", "OF", "PREP") and form is not None and form.form == "s"
+                agrees = inner or _agrees(norms[at - 1], norm, form is not None and form.form, nouns)
                 if (follows and agrees) or (told_apart and third):
                     found.append(at)
             elif at == chunk.start and before in ("REL", "ADVERB", "AND") and form is not None and follows:

@@ -291,6 +291,8 @@ class VerbChunker(RelatorChunker):
             subject = self.chunks[-1].value
             if subject.pronoun in ("me", "we", "he", "she") and not subject.head and self.nouns.starts(end):
                 return self._finite(at, end, found)  # 'I hung the mirror on the pole'
+        if form.form == "past" and self._in_relative_clause():
+            return self._finite(at, end, found)  # 'a bench on which the cat slept'
         subject = self.chunks[-1].value if self._previous() == "NP" else None
         person = subject is not None and last_word(subject.head) in PEOPLE and self.nouns.is_determiner(end)
         handled = person or self.norms[end] in ("it", "them", "him", "us")
@@ -495,6 +497,12 @@ class VerbChunker(RelatorChunker):
         if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
             return None
         return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
+
+    def _in_relative_clause(self) -> bool:
+        """Return True after a relative pronoun and a noun phrase, which are followed by a finite verb."""
+        before = [chunk.type for chunk in self.chunks[-3:]]
+        which = before == ["PREP", "NP", "NP"] and self.chunks[-2].value.pronoun == "which"
+        return which or before[1:] == ["REL", "NP"]
 
     def _orders(self, at: int) -> bool:
         """Return True for the verb of a command after an adverb: *now lower the lid*."""

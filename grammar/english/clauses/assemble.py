@@ -227,7 +227,10 @@ class Assembly:
             return
         past = link == "and" and bool(self.clauses) and self.clauses[-1].past
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
-        people = last_word(subject.phrase.head) in PEOPLE and all(v.group.lemma in _MEETING for v in verbs)
+        people = last_word(subject.phrase.head) in PEOPLE and all(
+            v.group.lemma in _GETTING or (v.group.lemma in _MEETING and v.group.positive and (said or v.said))
+            for v in verbs
+        )
         person = subject.phrase.pronoun in _PEOPLE or people
         known = len(self.clauses)
         held = verbs[-1].thing if verbs[-1].group.lemma in _BEARING else None

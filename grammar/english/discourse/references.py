@@ -657,7 +657,7 @@ class References:
             if last.sentence == self.sentence and last.others and last.subject is not besides:
                 return last.others[0]  # 'cans go in the box, glass in the crate beside it'
         if (
-            besides is not None and last is not None and relation in OPPOSITES and last.others
+            besides is not None and last is not None and relation in OPPOSITES.keys() - {"on", "under"} and last.others
             and OPPOSITES[relation] == last.relation and last.subject is not besides
         ):  # fmt: skip
             return last.others[0]
@@ -708,6 +708,10 @@ class References:
         for group in reversed(self.named):
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'
+        first = None if last is None or last.sentence != self.sentence else last.subject
+        if relation == "between" and first is not None and first is not besides and first.role is Role.THING:
+            if first.plural or first.size > 1:
+                return first  # 'the curtains were drawn, yet a glove was caught between them'
         if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
             return two
         restrictions = [f.subject for f in self.recent[1:] if f.sentence == self.sentence and f.subject is not None]
