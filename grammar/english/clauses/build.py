@@ -359,6 +359,9 @@ class Builder(Transformer[Any, Built]):
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
             return (turned, *noun.phrase.predicates, *extra)
+        person = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("me", "you", "we")
+        if person and noun.phrase.head in ("back", "rear") and relation in ("at", "on", "inside", "to"):
+            return (Predicate("behind", (noun.phrase.owner,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
@@ -411,8 +414,13 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
         manner = relation == "by" and noun.phrase.head in _MANNERS
+        bare = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
+        if relation in ("by", "at") and bare and not noun.phrase.known and not noun.phrase.adjectives:
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")  # 'by contrast', 'at dusk'
+            return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
-        idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
+        unowned = noun.phrase.owner is None
+        idle = last_word(noun.phrase.head) in NOT_PLACES and unowned and (plain or noun.phrase.determiner is None)
         if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
