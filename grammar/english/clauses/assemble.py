@@ -622,9 +622,10 @@ class Assembly:
             added = self._added_about(verb.thing.phrase)
             self._append(Clause(thing, added, span, mood if added else Mood.COMMAND, step=self.raw.step), link)
             return
-        acts = group.kind in ("other", "unknown") and verb.thing is None and mood is Mood.STATEMENT
+        acts = group.kind in ("other", "unknown") and verb.thing is None and group.lemma not in _PLACING
         clause = Clause(
-            phrase, tuple(made), span, mood, guesses=frozenset({Guess.ACTION}) if acts and shape != "existential" else frozenset(), positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
+            phrase, tuple(made), span, mood,
+            guesses=frozenset({Guess.ACTION} if acts and shape == "statement" else ()), positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
             condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
         )  # fmt: skip
         self._append(clause, link)

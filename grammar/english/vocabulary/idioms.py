@@ -12,7 +12,7 @@ IDIOMS = tuple(
         *("to be honest", "to be fair", "to be precise", "to be exact", "in my opinion", "in other words", "as it were"),
         *("for the record", "for what it is worth", "come to think of it", "to my mind", "in any event", "if you will"),
         *("the whole time", "the entire time", "all the time", "at all times", "most of the time", "from time to time"),
-        *("every time", "each time", "all day", "all night", "all year", "every day", "every night", "every morning"),
+        *("every time", "each time", "every day", "every night", "every morning"),
         "make sure that",
         "make sure",
         "be sure that",
