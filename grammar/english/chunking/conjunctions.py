@@ -40,7 +40,9 @@ class JointChunker(VerbChunker):
             not previous and (norm, after) in (("instead", "of"), ("rather", "than"))
         ):
             return Chunk("SUB", at, at + (1 if norm == "unlike" else 2), "instead")
-        if norm == "that" and previous == "PREP" and (self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";")):
+        stands = norm == "that" and self._verbs.get(after) is not None and self._verbs[after].kind == "posture"
+        ends = self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";") or stands
+        if norm == "that" and previous == "PREP" and ends:
             return Chunk("NP", at, at + 1, NounPhrase((self.words[at].start, self.words[at].end), pronoun="this"))
         if (
             norm == "from" and previous == "NP" and after in ("getting", "being", "coming", "going")

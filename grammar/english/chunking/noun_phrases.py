@@ -263,6 +263,8 @@ class NounChunker(ModifierFinder):
                 return lettered(letter, i + 1)
             nouns.append(norm)
             i += 1
+            if letter is not None:
+                break  # 'mannequin A wears …'
             if nouns[-1] in GENERIC_NOUNS and norms[i] in ("labeled", "labelled", "called", "named", "marked"):
                 named = self._letter(i + 1)
                 if named is not None:

@@ -180,6 +180,7 @@ class RelatorChunker:
                 return None
             takes_object = self.nouns.starts(end) or self.norms[end] == "which"
             takes_object = takes_object or (self.norms[end] == "that" and self.nouns.is_determiner(end + 1))
+            takes_object = takes_object or self._turned_after(end)
             if self.norms[at] == "to" and end == at + 1 and self._infinitive(end):
                 return None
             shorter_alone = (
@@ -232,6 +233,12 @@ class RelatorChunker:
                 return None
             return alone[0], "ADV", alone[1]
         return None
+
+    def _turned_after(self, at: int) -> bool:
+        """Return True for *that* before the verb of a turned clause: *on a shelf above that stood his books*."""
+        form = self._verbs.get(self.norms[at + 1])
+        stands = form is not None and form.kind == "posture" and form.form in ("s", "past", "base")
+        return self.norms[at] == "that" and stands and self._only_places()
 
     def _object_of_degree(self, at: int, end: int) -> bool:
         """Return True for *nearest the door* and *chair nearest door*, and False for *the nearest chair*."""

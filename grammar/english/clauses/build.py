@@ -419,8 +419,7 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")  # 'by contrast', 'at dusk'
             return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
-        unowned = noun.phrase.owner is None
-        idle = last_word(noun.phrase.head) in NOT_PLACES and unowned and (plain or noun.phrase.determiner is None)
+        idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
         if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)

@@ -312,6 +312,7 @@ class Discourse(Statements):
                     for p in predicates
                 )
             )
+            and not self._is_thing(subject, predicates, clause)
             and self._of_last(predicates, subject)
         ):
             return
@@ -468,6 +469,12 @@ class Discourse(Statements):
             else:
                 self._predicate(last, predicate, [])
         return True
+
+    def _is_thing(self, subject: NounPhrase, predicates: tuple[Predicate, ...], clause: Clause) -> bool:
+        """Return True for parts that lie somewhere by themselves: *Blades are stored in the drawer*."""
+        begins = clause.span[0] == self.references.start and clause.mood is Mood.STATEMENT
+        places = any(p.arguments and p.relation in ("inside", "on", "under", "behind", "next_to") for p in predicates)
+        return begins and places and subject.plural and subject.determiner is None and not subject.adjectives
 
     def _superlative_apposition(self, phrase: NounPhrase, predicates: tuple[Predicate, ...]) -> None:
         last = next((f.subject for f in self.references.recent if f.subject is not None), None)

@@ -11,7 +11,7 @@ from deixis.grammar.english.vocabulary.tables import inverted, table, word_set
 NOT_PLACES = word_set(
     "monday tuesday wednesday thursday friday saturday sunday january february march april june july august september"
     " october november december noon midnight morning evening afternoon schedule fire hurry average purpose sale"
-    " holiday home work school contrast value rest dawn dusk sunset sunrise night lunch dinner breakfast birth death"
+    " holiday home work school contrast value dawn dusk sunset sunrise night lunch dinner breakfast birth death"
     " miniature bulk profile bloom reserve use stock storage transit preparation readiness advance turn total"
     " time question mind doubt trouble fashion general particular charge demand"
     " construction warranty guarantee repair risk order display account hold loan offer request discussion review"
@@ -105,7 +105,7 @@ without: without, with out
 
 # Relation words that stand alone: 'the cup in front', 'nearby'.
 _PLACES_ALONE = """
-in_front: straight ahead, directly ahead, dead ahead, in front, out front, up front, in the foreground
+in_front: in front, out front, up front, in the foreground
 behind: behind, in back, out back, in the background, beyond
 above: above, overhead, up above
 below: below, down below, underneath
@@ -137,6 +137,7 @@ one_each: one each, one apiece, one for each, respectively
 inward: inward, inwards, inboard
 outward: outward, outwards, outboard
 there: within sight, within reach, within easy reach, within arm 's reach
+there: straight ahead, directly ahead, dead ahead
 there: over there, there, here, out there, up there, down there
 apart: apart, away, far away
 alone: by itself, all by itself, on its own, all on its own, by themselves, on their own, all alone
