@@ -51,6 +51,9 @@ class JointChunker(VerbChunker):
             return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
         if norm == "by" and self._is_name(at + 1):
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'a seascape by Turner'
+        form = self._verbs.get(self.norms[at + 2])
+        if (norm, after) == ("far", "from") and form is not None and form.form == "ing":
+            return Chunk("NOT", at, at + 2)  # 'far from lying on the saucer'
         if norm == "yet" and self.norms[at - 1] in NEGATIONS:
             return Chunk("ADVERB", at, at + 1, norm)  # 'the neck, not yet glued, …'
         if norm == "whose":

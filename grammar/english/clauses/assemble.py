@@ -241,7 +241,8 @@ class Assembly:
             if none and verb.thing is None and verb.group.kind in ("other", "unknown"):
                 misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
                 continue
-            if verb.group.lemma in _FALLING and not _UNDONE.isdisjoint(verb.group.adverbs):
+            acted = verb.group.lemma in _FALLING or (verb.group.kind in ("other", "unknown") and verb.thing is None)
+            if acted and not _UNDONE.isdisjoint(verb.group.adverbs):
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue
             departs = (

@@ -435,7 +435,7 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        kept = shaped or written == "over" or written in AWAY_FROM
+        kept = shaped or written == "over" or written in AWAY_FROM or written.startswith("from ")
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,

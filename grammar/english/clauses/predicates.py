@@ -88,6 +88,11 @@ _TELLING = word_set(
 )
 """Verbs after which *in* names a text or a picture."""
 
+_LEAVING = word_set(
+    "roll come take move pull fall slip drop slide get remove fetch bring push lift drag carry run crawl jump fly"
+)
+"""Verbs after which *from under* and *from behind* say where something was."""
+
 _RANGING = frozenset({"line", "range", "queue", "row"})
 """Verbs by which things get into a row: *lined up on the shelf*."""
 
@@ -140,6 +145,10 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 misunderstood(following.span, "this says what shape something gets, not where it is")
                 i += 2
                 continue  # 'folded into a fan'
+            if following is not None and lemma in _LEAVING and any(a.startswith("from ") for a in following.adverbs):
+                misunderstood(following.span, "this says where something was")
+                i += 2
+                continue  # 'the ball rolled from under the table'
             if following is not None and lemma in ("center", "centre") and following.relation in ("on", "inside"):
                 found.append(replace(following, relation="middle"))  # 'centred on the table'
             if following is not None and not following.relation.startswith("~"):
@@ -348,7 +357,8 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
     list of Predicate
         Where the thing is, or that the subject has it.
     """
-    found, rest = [], []
+    found: list[tuple[Predicate, bool]] = []
+    rest: list[Predicate] = []
     is_part = last_word(member.head) in PARTS or (member.owner is not None and member.owner.pronoun is not None)
     if member.head in GAPS:
         return []
@@ -368,6 +378,9 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
         else:
             rest.append(predicate)
     bare = replace(member, predicates=tuple(rest))
+    if member.determiner == "no":  # 'the table has no drawer under its top'
+        found = [(replace(predicate, positive=not predicate.positive), swapped) for predicate, swapped in found]
+        bare = replace(bare, determiner="a")
     made = []
     for predicate, swapped in found:
         if swapped and len(predicate.arguments) == 1:

@@ -93,10 +93,12 @@ class Discourse(Statements):
 
     def _fragment(self, phrase: NounPhrase, sentence: int) -> None:
         """Read a sentence without a verb: *rucksack at the back*, or a heading that tells the order of a list."""
-        wished = UNREAL.search(self.text[self.references.start : self.end]) is not None
+        whole_sentence = self.text[self.references.start : self.end]
+        wished = UNREAL.search(whole_sentence) is not None
+        ended = PAST_TIME.search(whole_sentence) is not None and PRESENT.search(whole_sentence) is None
         self.how = Qualification(
             phrase.span, sentence, weight=0.5 if wished else 1.0, optional=wished, uncertain=wished,
-            guesses=self.sentences[sentence].guesses,
+            past=ended and not self.story, guesses=self.sentences[sentence].guesses,
         )  # fmt: skip
         for predicate in phrase.predicates:
             if predicate.relation == "row":

@@ -11,7 +11,7 @@ from deixis.grammar.english.vocabulary.tables import inverted, table, word_set
 NOT_PLACES = word_set(
     "monday tuesday wednesday thursday friday saturday sunday january february march april june july august september"
     " october november december noon midnight morning evening afternoon schedule fire hurry average purpose sale"
-    " holiday home work school contrast value dawn dusk sunset sunrise night lunch dinner breakfast birth death"
+    " holiday home work school contrast value dawn dusk sunset sunrise night lunch dinner breakfast birth death rights"
     " miniature bulk profile bloom reserve use stock storage transit preparation readiness advance turn total"
     " time question mind doubt trouble fashion general particular charge demand"
     " construction warranty guarantee repair risk order display account hold loan offer request discussion review"
@@ -26,7 +26,7 @@ NOT_PLACES = word_set(
 NEVER_PLACES = word_set(
     "contract law rule agreement pretence pretense impression influence auspices assumption supervision guidance"
     " misapprehension spell popularity fame career power treaty"
-    " name circumstance principle nature rumour rumor honour honor behalf occasion"
+    " page chapter paragraph agenda diet odds name circumstance principle nature rumour rumor honour honor behalf occasion"
 )
 """Nouns after which a preposition names no place, whatever stands before them: *under the contract*."""
 

@@ -82,6 +82,7 @@ posture: slant, topple, collapse, cling clings clung clung clinging, intrude, pe
 posture: dock, hitch, tether, latch, snag, interleave, immerse, submerge, chuck, fling flings flung flung flinging
 posture: toss, pop, plump, plant, deposit, dab, smear, hammer, tap, bung, whack, thumbtack, staple, stitch, peg
 transitive: span, cradle, accommodate, sport, boast, crown, cap, skirt, fringe, ring
+other: fly flies flew flown flying, swim swims swam swum swimming, crawl, leap leaps leapt leapt leaping, jump
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
 """
 
