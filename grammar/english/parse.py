@@ -11,6 +11,7 @@ from deixis.deadline import Deadline
 from deixis.grammar.english.chunking.chunk import JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.chunking.chunker import Chunker
 from deixis.grammar.english.chunking.noun_positions import is_known
+from deixis.grammar.english.chunking.possible_verbs import possible_verbs
 from deixis.grammar.english.clauses.assemble import Assembly, Found
 from deixis.grammar.english.clauses.build import Builder
 from deixis.grammar.english.clauses.built import Built, notes
@@ -37,6 +38,10 @@ if TYPE_CHECKING:
     from lark import Lark
 
 
+MIN_GAIN = 2
+"""Number of words that a second reading of a sentence must understand beyond those of the first."""
+MAX_WORDS_OF_ALTERNATIVES = 60
+"""Number of words up to which a doubtful sentence is read in several ways."""
 LAST_LATIN_LETTER = "\u024f"
 MIN_KNOWN_SHARE = 0.16
 """Smallest share of function words, adjectives and verbs in a sentence of English."""
@@ -123,8 +128,34 @@ def _place_of_list(
 def _sentence(
     text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...]
 ) -> Sentence:
+    """Parse a sentence; where the parse is doubtful, try words that were taken as nouns as verbs."""
+    best, chunks = _parsed(text, raw, words, nouns, lead, frozenset())
+    cost = _cost(best)
+    note = best.fragment is not None
+    if cost and not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
+        for verbs in possible_verbs(chunks, words, nouns):
+            other, _ = _parsed(text, raw, words, nouns, lead, verbs)
+            if _cost(other) + MIN_GAIN <= cost or (note and _cost(other) < cost and other.fragment is None):
+                best, cost = other, _cost(other)
+    return best
+
+
+def _cost(sentence: Sentence) -> int:
+    """Return how much of a sentence is not understood, or understood by guesses: words and doubtful steps."""
+    said = [(clause, clause.guesses) for clause in sentence.clauses]
+    guesses = sum(len(found) for _, found in said) + len(sentence.guesses)
+    note = sentence.fragment is not None
+    return sentence.words - sentence.words_understood + 2 * guesses + note
+
+
+def _parsed(
+    text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...],
+    verbs: frozenset[int],
+) -> tuple[Sentence, list[Chunk]]:  # fmt: skip
+    """Parse a sentence whose words at ``verbs`` are verbs; return its chunks as well."""
     unknown: list[Misunderstood] = []
     foreign = False
+    found_chunks: list[Chunk] = []
     before = notes.set(unknown)
     try:
         asks = text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?")
@@ -136,7 +167,8 @@ def _sentence(
                 Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
             )
         elif not raw.heading:
-            chunks = rewritten(Chunker(words, nouns).run(), text)
+            found_chunks = Chunker(words, nouns, verbs).run()
+            chunks = rewritten([replace(chunk) for chunk in found_chunks], text)
             assembly.hedges = [
                 (chunk.span[0], chunk.value)
                 for chunk in chunks
@@ -154,7 +186,7 @@ def _sentence(
     total = [word for word in words if word.is_word]
     spans = sorted({(note.span, note.reason): note for note in unknown}.values(), key=lambda note: note.span)
     missed = sum(any(note.span[0] <= word.start < note.span[1] for note in spans) for word in total)
-    return Sentence(
+    sentence = Sentence(
         text=text[raw.start : raw.end],
         span=(raw.start, raw.end),
         clauses=found.clauses,
@@ -166,6 +198,7 @@ def _sentence(
         viewpoint=found.viewpoint,
         guesses=found.guesses,
     )
+    return sentence, found_chunks
 
 
 def _is_foreign(words: list[Word]) -> bool:
@@ -209,10 +242,11 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         pieces.append((at, end, built))
         at = end
     for i, (at, end, built) in enumerate(pieces):
-        beside = [other for first, last, other in pieces if last == at or first == end]
         led = any(_is_verb(chunk) and chunk.span[1] <= chunks[at].span[0] for chunk in skipped)
-        run_on = led or (bool(beside) and not any(b.shape in _ORDERS for b in (built, *beside)))
-        guesses = {Guess.RUN_ON} if run_on else set()
+        before = [other for _, last, other in pieces if last == at and not _ORDERS & {built.shape, other.shape}]
+        after = [other for first, _, other in pieces if first == end and not _ORDERS & {built.shape, other.shape}]
+        taken = any(other.shape == "said" and other.verbs for other in after)  # the last noun can be its subject
+        guesses = {Guess.RUN_ON} if led or before or taken else {Guess.CUT_SHORT} if after else set()
         if built.shape == "said" and (segment.link == "and" or built.verbs):
             guesses.add(Guess.NO_SUBJECT)
         assembly.guesses = frozenset(guesses)
@@ -225,6 +259,7 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
 
 
+_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ"}
 _ORDERS = frozenset({"command", "search", "other"})
 """Shapes of commands, which show by their verb where they begin."""
 
@@ -240,13 +275,22 @@ def _longest(chunks: list[Chunk], at: int) -> tuple[Built | None, int]:
     whole, ends = _feed(lark, chunks, at, len(chunks))
     if whole is not None:
         return whole, len(chunks)
-    for end in reversed(ends):
+    joined = [end for end in ends if _ends_list(chunks, at, end)]
+    for end in (*(e for e in reversed(ends) if e not in joined), *reversed(joined)):
         before = len(notes.get())
         built, _ = _feed(lark, chunks, at, end)
         if built is not None:
             return built, end
         del notes.get()[before:]
     return None, at
+
+
+def _ends_list(chunks: list[Chunk], at: int, end: int) -> bool:
+    """Return True if a clause would end with the last noun of a list, which can be the subject of what follows."""
+    if [chunk.type for chunk in chunks[end - 2 : end]] != ["NJ", "NP"] or chunks[end].type in _JOINTS:
+        return False
+    relators = [chunk.value for chunk in chunks[at:end] if chunk.type == "PREP"]
+    return not relators or relators[-1].preposition.relation not in ("between", "among")
 
 
 def _feed(lark: Lark, chunks: list[Chunk], at: int, end: int) -> tuple[Built | None, list[int]]:

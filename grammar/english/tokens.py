@@ -93,6 +93,8 @@ _DENIALS = {
 """Phrases that deny what follows them, or advise it, with the words that say the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
+_FORMS_OF_ADDRESS = word_set("mr mrs ms dr st prof capt rev sgt lt col gen")
+"""Titles before a name, with a full stop that ends no sentence."""
 _ABBREVIATIONS = word_set("e.g i.e etc approx mr mrs ms dr st no fig vs cf ca min max incl ft sq a.m p.m")
 _WORD = re.compile(
     r"`[^`\n]{1,1000}`|"
@@ -193,7 +195,8 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
             last = before[-1].casefold().lstrip("(") if before else ""
             following = text[match.end() : match.end() + 2].strip()
             numbered = following[:1].isdigit() and last.isalpha() and 1 < len(last) <= MAX_ABBREVIATION
-            if (last in _ABBREVIATIONS and not following[:1].isupper()) or numbered:
+            abbreviated = last in _ABBREVIATIONS and not following[:1].isupper()
+            if abbreviated or numbered or (last in _FORMS_OF_ADDRESS and following):
                 continue
         return match.end(), False
     return len(text), _is_heading(text[start:])

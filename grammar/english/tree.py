@@ -102,6 +102,7 @@ class NounPhrase:
     owner: NounPhrase | None = None
     members: tuple[NounPhrase, ...] = ()
     joined_by: str | None = None
+    known: bool = True  # False for a singular that the ontology does not have
     negated: bool = False  # 'the red box, not the blue one': the second member
 
 
@@ -141,6 +142,7 @@ class Predicate:
     adverbs: tuple[str, ...] = ()  # 'directly', 'right', 'slightly', 'usually'
     positive: bool = True
     reversed: bool = False
+    of_one: bool = False  # of a thing that 'it' stands for: 'with a knife across it'
     viewpoint: Viewpoint | None = None  # 'to your left', 'to the chair's left'; see also Sentence.viewpoint
 
 

@@ -11,8 +11,9 @@ from deixis.grammar.english.chunking.fixed_phrases import FixedPhraseChunker
 from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.verb_groups import PARTICLES
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
+from deixis.grammar.english.vocabulary.adjectives import is_material_noun
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, NEGATIONS
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, prepositions
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 
 
@@ -88,6 +89,14 @@ class Chunker(FixedPhraseChunker):
             previous in ("AND", "COMMA", "THEN", "ADVERB") and any(chunk.type in ("PUT", "DO") for chunk in self.chunks)
         )
 
+    def _is_material_here(self, at: int, end: int) -> bool:
+        """Return True for a material, or a side after *whose*, that is a noun: *neither paper nor cloth*, *of tweed*."""
+        before = [chunk.type for chunk in self.chunks[-2:]]
+        listed = before[-1:] == ["OF"] or before in (["NP", "AND"], ["NP", "OR"])
+        return (listed and is_material_noun(self.norms[end - 1])) or (
+            before[-1:] == ["WHOSE"] and end == at + 1 and self.norms[at] in PLACE_NOUNS
+        )
+
     def _noun_phrase(self, at: int) -> Chunk | None:
         """Return a noun phrase, or an adjective phrase."""
         if self._unknown_imperative(at):
@@ -145,6 +154,9 @@ class Chunker(FixedPhraseChunker):
             return Chunk("ADJP", at, end, phrase.adjectives)  # 'the block second from the left'
         if end == at + 1 and phrase is not None and self._previous() == "BE" and (words := self.nouns.predicative(at)):
             return Chunk("ADJP", at, end, words)
+        if phrase is None and self._is_material_here(at, end):
+            span = self.words[at].start, self.words[end - 1].end
+            return Chunk("NP", at, end, NounPhrase(span, self.norms[end - 1], adjectives=adjectives[:-1]))
         if phrase is None:
             if self._previous() in ("PREP", "TPART", "WITH", "OF", "TVERB", "FIND", "PUT") or self.norms[end] == "of":
                 span = self.words[at].start, self.words[end - 1].end

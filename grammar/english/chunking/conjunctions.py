@@ -6,7 +6,7 @@ from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Re
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
-from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, PRONOUNS
+from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, NEGATIONS, PRONOUNS
 from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -40,13 +40,22 @@ class JointChunker(VerbChunker):
             not previous and (norm, after) in (("instead", "of"), ("rather", "than"))
         ):
             return Chunk("SUB", at, at + (1 if norm == "unlike" else 2), "instead")
-        if norm == "that" and previous == "PREP" and (self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";")):
+        stands = norm == "that" and self._verbs.get(after) is not None and self._verbs[after].kind == "posture"
+        ends = self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";") or stands
+        if norm == "that" and previous == "PREP" and ends:
             return Chunk("NP", at, at + 1, NounPhrase((self.words[at].start, self.words[at].end), pronoun="this"))
         if (
             norm == "from" and previous == "NP" and after in ("getting", "being", "coming", "going")
             and any(c.type == "PUT" and c.value.lemma == "keep" for c in self.chunks)
         ):  # fmt: skip
             return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
+        if norm == "by" and self._is_name(at + 1):
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'a seascape by Turner'
+        form = self._verbs.get(self.norms[at + 2])
+        if (norm, after) == ("far", "from") and form is not None and form.form == "ing":
+            return Chunk("NOT", at, at + 2)  # 'far from lying on the saucer'
+        if norm == "yet" and self.norms[at - 1] in NEGATIONS:
+            return Chunk("ADVERB", at, at + 1, norm)  # 'the neck, not yet glued, …'
         if norm == "whose":
             return Chunk("WHOSE", at, at + 1)
         if norm in ("where", "how", "why") or (norm == "when" and after in IS_FORMS):
@@ -163,6 +172,11 @@ class JointChunker(VerbChunker):
             or norm in MODALS
             or (form is not None and form.form in ("s", "past", "base") and norm not in ("left", "set"))
         )
+
+    def _is_name(self, at: int) -> bool:
+        """Return True for a name without an article, as a person has it."""
+        named = at < len(self.words) and self.nouns.is_name(at)
+        return named and not self.nouns.is_determiner(at) and self.norms[at] not in PRONOUNS
 
     def _is_back(self, chunk: Chunk) -> bool:
         """Return True for *your back*."""

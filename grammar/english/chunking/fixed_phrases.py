@@ -57,6 +57,9 @@ class FixedPhraseChunker(JointChunker):
         """Return the end of *under no circumstances* before *must the cup …*: the verb after the subject is denied."""
         if self._previous() not in ("", "COMMA", "CUT", "AND", "ADVERB", "COLON"):
             return None
+        if self.norms[at : at + 3] == ["do", "not", "you"]:  # 'don't you ever put it there'
+            self._denied = "must"
+            return at + 3 + (self.norms[at + 3] in ("ever", "dare", "go"))
         for phrase in (*_DENIALS, *self._denied_circumstances(at)):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase:
@@ -67,7 +70,8 @@ class FixedPhraseChunker(JointChunker):
                 if self.norms[end] in MODALS or self.norms[end] in ("do", "does", "is", "are"):
                     self._denied = MODALS.get(self.norms[end], "must")
                     return end + 1
-                if self._verbs.get(self.norms[end]) is not None:
+                form = self._verbs.get(self.norms[end])
+                if form is not None and form.form in ("base", "ing", "s"):
                     self._denied = "must"
                     return end
         return None
@@ -239,7 +243,7 @@ class FixedPhraseChunker(JointChunker):
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
                 return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
-        if norm in _STEPS and self._previous() in ("", "CUT", "THEN", "AND") and self._subject_or_command(at + 1):
+        if norm in _STEPS and self._previous() in ("", "CUT", "THEN", "AND", "COMMA") and self._subject_or_command(at + 1):
             return Chunk("ADVERB", at, at + 1, norm)  # 'first you lay the cloth'
         if norm in CHAT_WORDS and self.norms[at + 1] in ("", ",", ".", ":", "!", "?", ";"):
             return Chunk("ADVERB", at, at + 1, norm)

@@ -23,6 +23,13 @@ class ModifierFinder(NounFinder):
             if norm == "still" and norms[i - 1] in ("of", "with") and self.is_noun(i + 1):
                 i += 1  # 'a bottle of still water'
                 continue
+            if norm in ("later", "earlier") and determined and self._nounish(i + 1):
+                i += 1  # 'a later addition'
+                continue
+            if self.is_participle_of_one(i):
+                found.append(Adjective(norm, "state", Degree.PLAIN, self._span(i, i + 1)))
+                i += 1
+                continue
             rank = ORDINALS.get(norm)
             if norm in ("second", "third", "quarter") and not determined and not self._nounish(i + 1) and i > at:
                 break

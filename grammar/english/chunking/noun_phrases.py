@@ -157,6 +157,8 @@ class NounChunker(ModifierFinder):
         norm = self.norms[at]
         if norm not in PRONOUNS or at >= len(self.words):
             return None
+        if norm == "which" and previous == "PREP":
+            return PRONOUNS[norm]  # 'a till in which three saws hang'
         if norm == "that" and previous in ("BE", "VERB", "TVERB") and not self._nounish(at + 1):
             return None
         if norm in DETERMINERS or norm == "one":
@@ -261,6 +263,8 @@ class NounChunker(ModifierFinder):
                 return lettered(letter, i + 1)
             nouns.append(norm)
             i += 1
+            if letter is not None:
+                break  # 'mannequin A wears …'
             if nouns[-1] in GENERIC_NOUNS and norms[i] in ("labeled", "labelled", "called", "named", "marked"):
                 named = self._letter(i + 1)
                 if named is not None:
@@ -273,7 +277,8 @@ class NounChunker(ModifierFinder):
                     return start, None, ()
             if not modifiers and count is None and determiner in ("a", "an", "the", None) and owner is None:
                 return start, None, ()
-            if determiner in ("this", "that", "these", "those", "each", "every", "all", "both") and not modifiers:
+            alone = determiner in ("this", "that", "these", "those", "each", "every", "all", "both") and not modifiers
+            if alone and count is None:  # but 'between these two'
                 return start, None, ()
             phrase = NounPhrase(
                 self._span(start, i),
@@ -297,6 +302,6 @@ class NounChunker(ModifierFinder):
             plural = True
         phrase = NounPhrase(
             self._span(start, i), head, determiner, count, plural or (count or 1) > 1, None, modifiers, owner=owner,
-            negated=negated,
+            negated=negated, known=plural or self._nouns.knows(nouns[-1]) or not nouns[-1].isalpha(),
         )  # fmt: skip
         return i, phrase, ()

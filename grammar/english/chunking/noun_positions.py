@@ -86,6 +86,7 @@ class NounFinder:
         self._closed, self._verbs, self._adjectives = _closed(), verb_forms(), adjectives()
         self.relating_words = relating_words()
         self.is_object = False  # True while a phrase after *put* or *hold* is read
+        self.verbs: frozenset[int] = frozenset()  # words that are tried as verbs
 
     def number(self, at: int) -> float | None:
         """Return the value of a number that is written in words or digits.
@@ -264,7 +265,22 @@ class NounFinder:
             "on",
         ):
             return norm == "left" and self.norms[at + 1] == "on"
-        return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at)
+        return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at) or self.is_participle_of_one(at)
+
+    def is_participle_of_one(self, at: int) -> bool:
+        """Return True for an unknown participle before *one* or *ones*: *unfired ones*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            False for a participle before any other word.
+        """
+        return self.norms[at].endswith("ed") and self.norms[at + 1] in ("one", "ones")
 
     def adjective_before_noun(self, at: int) -> bool:
         """Return True if the word is an adjective with a noun after it: *near edge*, *left lamp*.
@@ -288,6 +304,8 @@ class NounFinder:
 
     def _nounish(self, at: int) -> bool:
         norm = self.norms[at]
+        if at in self.verbs:
+            return False
         if not norm or norm in self._closed or at >= len(self.words):
             return norm in ("one", "ones")
         if not norm[0].isalpha():
@@ -312,7 +330,7 @@ class NounFinder:
             False also for a function word.
         """
         norm = self.norms[at]
-        if not norm or norm in self._closed or not (norm[0].isalpha()):
+        if not norm or at in self.verbs or norm in self._closed or not (norm[0].isalpha()):
             return False
         if at == 0 and self.norms[1] in IS_FORMS and norm.isalpha() and norm not in ADVERBS and norm not in HEDGES:
             return True  # a name: Holly is …
@@ -349,6 +367,7 @@ class NounFinder:
             if norm.endswith("ing") and len(norm) > 5 and not after_determiner:
                 return (
                     self._compound_ing(at, before, after)
+                    or after in IS_FORMS
                     or (self._nounish(at + 1) and after not in PLACE_NOUNS)
                     or (before in ("with", "of") and not self.starts(at + 1))
                 )
@@ -409,6 +428,9 @@ class NounFinder:
         if form.form == "s" and before in PUT_VERBS and commanded and self._nouns.singular(norm)[1]:
             return True  # 'keep drinks away from it'
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
+        stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
+        if stands and before in PLACE_NOUNS:
+            return False  # 'in the middle stands the crucifix'
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
         accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
@@ -416,7 +438,7 @@ class NounFinder:
             return True  # 'with the cotton rolls behind it'
         first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
-            first > 1 and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
+            first > 1 and not self.is_determiner(at - 1) and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
             and form.kind in ("posture", "lean") and self._predicate_follows(at)
             and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
         ):  # fmt: skip
@@ -668,6 +690,22 @@ class NounFinder:
         takes_object = after in ARTICLES and not norm.endswith("ings")
         return determined and (takes_object or self._nouns.knows(" ".join(nouns))) and not verbs_later
 
+    def is_name(self, at: int) -> bool:
+        """Return True for a word with one capital letter, the first: a name where it does not begin the sentence.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            False for one letter, and for capitals throughout, as in *USB*.
+        """
+        text = self.words[at].text
+        return len(text) > 1 and text[0].isupper() and text[1:].islower()
+
     def _noun_here(self, at: int, nouns: list[str]) -> bool:
         norm = self.norms[at]
         if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
@@ -691,6 +729,8 @@ class NounFinder:
             return False
         if nouns and norm in ("left", "right"):
             return False
+        if nouns and self.is_name(at) and self._nouns.knows(nouns[-1]) and self.words[at - 1].text[:1].islower():
+            return False  # 'behind the aquarium Mr Bell put …'
         if nouns and norm == "well" and self.norms[at + 1] in prepositions().keys() | _AWAY:
             return False  # 'keep the candle well away from it'
         if (
@@ -755,7 +795,7 @@ _NEVER_NOUNS = word_set(
     " where there then so too wherever otherwise also is are was were be been being am do does did has have had"
     " having n't please let lets upside into onto upon toward towards against among amongst between beside"
     " beneath underneath behind until during such whether whenever via per through 's 're 'm 'll 've 'd it's"
-    " although though since unless"
+    " although though since unless yet"
 )
 
 NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")

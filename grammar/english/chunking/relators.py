@@ -79,10 +79,11 @@ def _ATTACHED_UNIT(norm: str) -> float | None:  # noqa: N802
 class RelatorChunker:
     """Finder of prepositions, place words and lengths, beside the chunks that were found so far."""
 
-    def __init__(self, words: list[Word], nouns: KnownNouns) -> None:
+    def __init__(self, words: list[Word], nouns: KnownNouns, verbs: frozenset[int] = frozenset()) -> None:
         self.words = words
         self.norms = [word.norm for word in words] + [""] * 12
         self.nouns = NounChunker(words, self.norms, nouns)
+        self.nouns.verbs = verbs
         self.chunks: list[Chunk] = []
         self._denied: str | None = None  # modal of a denial that stands before its subject
         self._denied_be: VerbGroup | None = None  # 'by no means is the cup …': *is* goes after the subject
@@ -179,6 +180,7 @@ class RelatorChunker:
                 return None
             takes_object = self.nouns.starts(end) or self.norms[end] == "which"
             takes_object = takes_object or (self.norms[end] == "that" and self.nouns.is_determiner(end + 1))
+            takes_object = takes_object or self._turned_after(end)
             if self.norms[at] == "to" and end == at + 1 and self._infinitive(end):
                 return None
             shorter_alone = (
@@ -231,6 +233,12 @@ class RelatorChunker:
                 return None
             return alone[0], "ADV", alone[1]
         return None
+
+    def _turned_after(self, at: int) -> bool:
+        """Return True for *that* before the verb of a turned clause: *on a shelf above that stood his books*."""
+        form = self._verbs.get(self.norms[at + 1])
+        stands = form is not None and form.kind == "posture" and form.form in ("s", "past", "base")
+        return self.norms[at] == "that" and stands and self._only_places()
 
     def _object_of_degree(self, at: int, end: int) -> bool:
         """Return True for *nearest the door* and *chair nearest door*, and False for *the nearest chair*."""
@@ -327,6 +335,13 @@ class RelatorChunker:
             end += 1
         return Chunk("MEASURE", at, end, (number * scale, hedge, bound))
 
+    def _directed(self, at: int) -> bool:
+        """Return True for words after a length that say from what: *a hand away*, *a hand to the right of it*."""
+        place = self._relations.longest(self.norms, at)
+        aside = self.norms[at : at + 2] == ["to", "the"] and self.norms[at + 2] in ("left", "right")
+        directed = place is not None and place[1].relation in _DIRECTED
+        return self.norms[at] in ("away", "apart", "from") or aside or directed
+
     def _spoken_length(self, at: int) -> tuple[int, float] | None:
         """Return the end and the metres of *a hand's width*, *half a metre*, *an inch*, *a few centimetres*."""
         i, times = at, 1.0
@@ -348,7 +363,7 @@ class RelatorChunker:
             end += 2
         elif self.norms[end] in _BREADTHS:
             end += 1
-        elif unit in _BODY:
+        elif unit in _BODY and not self._directed(end):
             return None
         follows = self._match(end) is not None or self.norms[end] in ("away", "apart", "from", "", ",", ".", "or")
         return (end, times * scale) if follows and self.norms[end] != "of" else None

@@ -188,6 +188,8 @@ class VerbChunker(RelatorChunker):
         norm = self.norms[i]
         form = self._verbs.get(norm)
         helped = i > first
+        if i in self.nouns.verbs and (tried := self._tried(at, i, group)) is not None:
+            return tried
         told = self.norms[i + 1] == "that" or (norm in SAYING and self.norms[i + 1] in _TOLD)
         if norm in REPORTS | SAYING and told and self._previous() == "NP":
             return Chunk(
@@ -289,6 +291,8 @@ class VerbChunker(RelatorChunker):
             subject = self.chunks[-1].value
             if subject.pronoun in ("me", "we", "he", "she") and not subject.head and self.nouns.starts(end):
                 return self._finite(at, end, found)  # 'I hung the mirror on the pole'
+        if form.form == "past" and self._in_relative_clause():
+            return self._finite(at, end, found)  # 'a bench on which the cat slept'
         subject = self.chunks[-1].value if self._previous() == "NP" else None
         person = subject is not None and last_word(subject.head) in PEOPLE and self.nouns.is_determiner(end)
         handled = person or self.norms[end] in ("it", "them", "him", "us")
@@ -327,7 +331,7 @@ class VerbChunker(RelatorChunker):
             return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
         if norm == "open" and self._previous() == "VERB":
             return None  # 'stands open on the sideboard'
-        if norm in ("set", "put") and self._previous() == "BE":
+        if norm in ("set", "put", "spread") and self._previous() == "BE":
             return Chunk("PART", at, end, found)
         if form.form == "base":
             subject = self._previous()
@@ -387,6 +391,8 @@ class VerbChunker(RelatorChunker):
                 if norm in ("look", "turn") and self.norms[end] in ("at", "to", "toward", "towards"):
                     end += 1
                 return Chunk("TPART", at, end, found)
+            if imperative and norm in _INTRANSITIVE and self.nouns.is_determiner(end):
+                return Chunk("VERB", at, end, found)  # 'on the table, whose top is oak, lie a loaf and a knife'
             if imperative and not subject_is_you and self.nouns.is_determiner(end):
                 return Chunk("DO", at, end, found)
             if subject == "REL":
@@ -397,6 +403,22 @@ class VerbChunker(RelatorChunker):
         if self.nouns.is_noun(i) and self._previous() not in ("NP", "REL"):  # third person
             return None
         return self._finite(at, end, found)
+
+    def _tried(self, at: int, i: int, group: VerbGroup) -> Chunk | None:
+        """Return the verb of a word that is tried as one: a command where a clause begins, and finite elsewhere."""
+        form = self._verbs.get(self.norms[i])
+        lemma, kind = (self.norms[i], "unknown") if form is None else (form.lemma, form.kind)
+        plain = form is None or form.form == "base"
+        end = i + 1
+        if i == at and plain and self._previous() in JOINT_TYPES | {"", "ADVERB"}:
+            end += self.norms[end] in PARTICLES and self.nouns.starts(end + 1)
+            if self.nouns.starts(end):
+                return Chunk("PUT", at, end, _with(group, lemma, "posture", "base"))
+            return Chunk("GO", at, end, _with(group, lemma, kind, "base")) if self._predicate_after(i) else None
+        if self._previous() not in FINITE | {"NP", "REL", "ADVERB"}:
+            return None
+        found = _with(group, lemma, kind, "s" if form is None else form.form)
+        return Chunk("TVERB" if self._takes_object(kind, end) else "VERB", at, end, found)
 
     def _inverts(self, form: str, at: int) -> bool:
         """Return True for the participle of *at its left end is bolted the vice*, before its subject."""
@@ -456,6 +478,8 @@ class VerbChunker(RelatorChunker):
         """Return the participle of a verb that no table holds: *the window shrouded in fog*."""
         norm = self.norms[i]
         previous = self._previous()
+        if self.nouns.is_participle_of_one(i):
+            return None
         if previous == "ADVERB" and len(self.chunks) > 1 and self.chunks[-2].type in ("COMMA", "BE"):
             previous = self.chunks[-2].type  # 'a loaf, perfectly preserved'
         if (
@@ -473,6 +497,12 @@ class VerbChunker(RelatorChunker):
         if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
             return None
         return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
+
+    def _in_relative_clause(self) -> bool:
+        """Return True after a relative pronoun and a noun phrase, which are followed by a finite verb."""
+        before = [chunk.type for chunk in self.chunks[-3:]]
+        which = before == ["PREP", "NP", "NP"] and self.chunks[-2].value.pronoun == "which"
+        return which or before[1:] == ["REL", "NP"]
 
     def _orders(self, at: int) -> bool:
         """Return True for the verb of a command after an adverb: *now lower the lid*."""
@@ -585,6 +615,9 @@ _TENDING = {
 
 _GOING = word_set("stand sit step walk go kneel stay wait look")
 """Verbs of commands that take no object."""
+
+_INTRANSITIVE = word_set("lie sit kneel come go rise")
+"""Verbs of a state or a motion without an object; before a noun phrase they come before their subject."""
 
 _CROSSING = word_set("move go walk come head step turn")
 """Verbs of commands that send the reader somewhere."""

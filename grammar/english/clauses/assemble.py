@@ -14,7 +14,7 @@ from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
-from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS
+from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _FRAMES = frozenset({"facing", "from"})
@@ -23,9 +23,9 @@ _PLACING = frozenset(
         "put", "place", "keep", "leave", "set", "lay", "store", "spread", "position", "move", "return", "transfer",
         "shift", "pour", "scatter", "sprinkle", "arrange", "drape", "stand", "hang", "hide", "tuck", "stash", "stick",
         "slip", "stow", "shove", "prop", "rest", "stack", "line", "drop", "slide", "push", "pile", "bury", "park",
-        "tie", "clip", "pin", "hook", "squeeze", "balance", "lean", "insert",
+        "tie", "clip", "pin", "hook", "squeeze", "balance", "lean", "insert", *PUT_VERBS,
     }
-)  # fmt: skip
+) - {"start", "finish", "turn", "top", "cover", "fill", "flank", "surround", "dot", "bring"}  # fmt: skip
 _BEARING = frozenset({"hold", "contain", "carry", "bear"})
 """Verbs after whose object a place is that of the object."""
 _GETTING = frozenset({"have", "get", "receive"})
@@ -227,7 +227,10 @@ class Assembly:
             return
         past = link == "and" and bool(self.clauses) and self.clauses[-1].past
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
-        people = last_word(subject.phrase.head) in PEOPLE and all(v.group.lemma in _GETTING for v in verbs)
+        people = last_word(subject.phrase.head) in PEOPLE and all(
+            v.group.lemma in _GETTING or (v.group.lemma in _MEETING and v.group.positive and (said or v.said))
+            for v in verbs
+        )
         person = subject.phrase.pronoun in _PEOPLE or people
         known = len(self.clauses)
         held = verbs[-1].thing if verbs[-1].group.lemma in _BEARING else None
@@ -238,7 +241,8 @@ class Assembly:
             if none and verb.thing is None and verb.group.kind in ("other", "unknown"):
                 misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
                 continue
-            if verb.group.lemma in _FALLING and not _UNDONE.isdisjoint(verb.group.adverbs):
+            acted = verb.group.lemma in _FALLING or (verb.group.kind in ("other", "unknown") and verb.thing is None)
+            if acted and not _UNDONE.isdisjoint(verb.group.adverbs):
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue
             departs = (
@@ -619,8 +623,10 @@ class Assembly:
             added = self._added_about(verb.thing.phrase)
             self._append(Clause(thing, added, span, mood if added else Mood.COMMAND, step=self.raw.step), link)
             return
+        acts = group.kind in ("other", "unknown") and verb.thing is None and group.lemma not in _PLACING
         clause = Clause(
-            phrase, tuple(made), span, mood, positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
+            phrase, tuple(made), span, mood,
+            guesses=frozenset({Guess.ACTION} if acts and shape == "statement" else ()), positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
             condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
         )  # fmt: skip
         self._append(clause, link)

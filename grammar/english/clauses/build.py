@@ -246,7 +246,8 @@ class Builder(Transformer[Any, Built]):
             and not members[1].negated
         ):
             first, second = members
-            named = second.determiner is not None or second.owner is not None
+            own = second.owner is not None and second.owner.pronoun in ("it", "they")
+            named = second.determiner is not None or (second.owner is not None and not own)
             if named and not is_place(first) and first.pronoun is None:  # apposition
                 kind = Predicate("kind", (second,), second.span)
                 return Noun(replace(first, predicates=(*first.predicates, kind), span=span), extra)
@@ -271,6 +272,10 @@ class Builder(Transformer[Any, Built]):
             return Noun(_restricted(noun, mods))
         if is_place(noun) and not noun.predicates:
             return _place_with(noun, tuple(mods))
+        outer = tuple(p for p in mods if p.of_one) if noun.plural else ()
+        if outer:  # 'the plate above the forks with a knife across it'
+            mods = tuple(p for p in mods if not p.of_one)
+            return Noun(_restricted(noun, mods) if mods else noun, outer)
         return Noun(_restricted(noun, mods))
 
     def noun(self, chunk: Chunk) -> NounPhrase:
@@ -354,6 +359,9 @@ class Builder(Transformer[Any, Built]):
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
             return (turned, *noun.phrase.predicates, *extra)
+        person = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("me", "you", "we")
+        if person and noun.phrase.head in ("back", "rear") and relation in ("at", "on", "inside", "to"):
+            return (Predicate("behind", (noun.phrase.owner,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
@@ -406,6 +414,10 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
         manner = relation == "by" and noun.phrase.head in _MANNERS
+        bare = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
+        if relation in ("by", "at") and bare and not noun.phrase.known and not noun.phrase.adjectives:
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")  # 'by contrast', 'at dusk'
+            return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
         if idle or (plain and manner):
@@ -423,7 +435,7 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        kept = shaped or written == "over" or written in AWAY_FROM
+        kept = shaped or written == "over" or written in AWAY_FROM or written.startswith("from ")
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
@@ -517,8 +529,9 @@ class Builder(Transformer[Any, Built]):
 
     def object_relative(self, rel: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that the cup stands on* and *which I keep under the mug*."""
-        predicates = flat(verb)
-        if noun.phrase.pronoun in ("me", "you", "we", "someone") or not predicates:
+        person = noun.phrase.pronoun in ("me", "you", "we", "someone", "he", "she")
+        predicates = flat(replace(verb, thing=None) if person else verb)
+        if person or not predicates:
             return tuple(p for p in predicates if p.arguments or p.relation in DIRECTION_RELATIONS)
         last = predicates[-1]
         if not last.arguments:

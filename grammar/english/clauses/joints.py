@@ -60,7 +60,7 @@ def segments(chunks: list[Chunk]) -> list[Segment]:
                 if i > start:
                     found.append(Segment(tuple(chunks[start:i]), link, coordinated))
                     link = ""
-                coordinated = "AND" in kinds and "SUB" in kinds
+                coordinated = "SUB" in kinds and not kinds.isdisjoint({"AND", "CUT"})
                 words = {"COMMA": ",", "AND": "and", "OR": "or", "BUT": "but", "THEN": "then", "CUT": ";", "COLON": ":"}
                 names = [words.get(types[k]) or str(chunks[k].value) for k in range(i, end)]
                 link = next((n for n in reversed(names) if n not in (",", ";")), link or names[-1])
@@ -128,6 +128,7 @@ def _cuts(
         return True
     following = types[end]
     complete = _finite_between(types, start, at) or (labelled and types[start] in PREDICATES)
+    complete = complete or (link in (",", "and") and _absolute_before(types, start, at))
     if link in _SUBORDINATE and "COMMA" in kinds and following not in ("REL", "WHOSE", "TPART", "PART"):
         return True
     if following == "BE" and types[end + 1 : end + 2] == ["NP"] and not complete:
@@ -153,6 +154,11 @@ def _cuts(
     if following in ("TPART", "PART") and complete and "COMMA" in kinds:
         return _inversion_follows(types, end)
     return False
+
+
+def _absolute_before(types: list[str], start: int, at: int) -> bool:
+    """Return True for a thing with its place and no verb, as in a list of such: *A sits at X, B at Y, C at Z*."""
+    return types[start] == "NP" and types[start + 1] in PREDICATES - {"WITH", "ADJP"} and at > start + 1
 
 
 def _verbless_inversion(types: list[str], at: int) -> bool:
@@ -320,7 +326,7 @@ def _list_then_verb(chunks: list[Chunk], types: list[str], at: int) -> bool:
             return True
         if types[i] in JOINT_TYPES:
             end, kinds = _run(types, i)
-            if "COMMA" in kinds and "AND" not in kinds and "OR" not in kinds:
+            if kinds & {"CUT", "COLON", "SUB"} or not kinds & {"AND", "OR"}:
                 return False
             if (
                 end >= len(types)
@@ -621,6 +627,10 @@ def _kind(
         placed = end + 1
         while types[placed : placed + 2] == ["OF", "NP"]:
             placed += 2
+        owner = source[end].value.owner
+        if owner is not None and owner.pronoun in ("it", "they") and types[placed : placed + 1] != []:
+            if types[placed] in PREDICATES and kinds == {"COMMA"}:
+                return "OJ"  # 'a lamp clamped to the edge, its arm bent over the towel'
         introduced = source[end].value.determiner in ("a", "an", "some") or source[end].value.count is not None
         between = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found)
         if (

@@ -160,7 +160,7 @@ def _sided(
             "side"
             if phrase.owner is not None and phrase.of is not None
             else "next_to"
-            if relator.preposition.relation in ("at", "to", "on", "near")
+            if relator.preposition.relation in ("at", "to", "near") or not arguments
             else "side",
             arguments,
             span,

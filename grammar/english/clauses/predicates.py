@@ -88,6 +88,14 @@ _TELLING = word_set(
 )
 """Verbs after which *in* names a text or a picture."""
 
+_LEAVING = word_set(
+    "roll come take move pull fall slip drop slide get remove fetch bring push lift drag carry run crawl jump fly"
+)
+"""Verbs after which *from under* and *from behind* say where something was."""
+
+_RANGING = frozenset({"line", "range", "queue", "row"})
+"""Verbs by which things get into a row: *lined up on the shelf*."""
+
 _FINISHING = word_set("bind bound upholster gild enamel lacquer varnish paint print dress cast carve engrave sign mark")
 """Verbs after which *in* names a material or a manner."""
 
@@ -115,7 +123,7 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
         following = flat_parts[i + 1] if i + 1 < len(flat_parts) else None
         if predicate.relation.startswith("~"):
             lemma, kind = predicate.relation[1:].split("~")
-            if lemma in ("stack", "pile") and following is not None and following.relation not in ("on", "stacked"):
+            if lemma in ("stack", "pile") and following is not None and following.relation != "stacked":
                 found.append(Predicate("stacked", (), predicate.span, positive=predicate.positive))
             agent = flat_parts[i + 2] if i + 2 < len(flat_parts) else None
             if (
@@ -131,10 +139,16 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 ]
                 i += 1
                 continue
+            if following is not None and lemma in _RANGING and following.relation != "row":
+                found.append(Predicate("row", (), predicate.span, positive=predicate.positive))
             if following is not None and lemma in _SHAPING and "into" in following.adverbs:
                 misunderstood(following.span, "this says what shape something gets, not where it is")
                 i += 2
                 continue  # 'folded into a fan'
+            if following is not None and lemma in _LEAVING and any(a.startswith("from ") for a in following.adverbs):
+                misunderstood(following.span, "this says where something was")
+                i += 2
+                continue  # 'the ball rolled from under the table'
             if following is not None and lemma in ("center", "centre") and following.relation in ("on", "inside"):
                 found.append(replace(following, relation="middle"))  # 'centred on the table'
             if following is not None and not following.relation.startswith("~"):
@@ -343,21 +357,30 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
     list of Predicate
         Where the thing is, or that the subject has it.
     """
-    found, rest = [], []
+    found: list[tuple[Predicate, bool]] = []
+    rest: list[Predicate] = []
+    is_part = last_word(member.head) in PARTS or (member.owner is not None and member.owner.pronoun is not None)
     if member.head in GAPS:
         return []
     for predicate in member.predicates:
         if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
+            one = any(argument.pronoun == "it" and not argument.head for argument in predicate.arguments)
+            predicate = replace(predicate, of_one=one)
             found.append((predicate, True))
         elif any(_is_of_it(argument) for argument in predicate.arguments):
             found.append((predicate, True))  # 'a plate with a knife across its edge'
         elif not predicate.arguments and predicate.part is None and predicate.relation in _AT_THE_SUBJECT:
             found.append((replace(predicate, arguments=(member,)), True))
+        elif predicate.relation == "state" and not is_part and any(p.arguments for p in member.predicates):
+            rest.append(predicate)  # 'with the strop folded on top of the case'
         elif predicate.relation in ("pointing", "facing", "open", "state", "parallel") and member.determiner != "a":
             found.append((predicate, False))
         else:
             rest.append(predicate)
     bare = replace(member, predicates=tuple(rest))
+    if member.determiner == "no":  # 'the table has no drawer under its top'
+        found = [(replace(predicate, positive=not predicate.positive), swapped) for predicate, swapped in found]
+        bare = replace(bare, determiner="a")
     made = []
     for predicate, swapped in found:
         if swapped and len(predicate.arguments) == 1:

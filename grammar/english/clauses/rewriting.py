@@ -78,7 +78,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times,
         _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_place_taken), _without(_count_apart), _with_parts_after_verbs,
+        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart), _with_parts_after_verbs,
         _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
         _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
         _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
@@ -261,6 +261,12 @@ def _stranded(chunks: list[Chunk], at: int) -> _Run | None:
     bare = chunk.type in ("UNKNOWN", "ADVERB") and chunk.value in ("for", "about", "with", "of", "at", "to")
     ends = bare and type_at(chunks, at - 1) in FINITE | {"PART", "NP"} and type_at(chunks, at + 1) in FINITE
     return (at + 1, None) if ends and "REL" in [c.type for c in chunks[:at]] else None
+
+
+def _depicted(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what a picture *is of*: *the painting is of a boat under a bridge*."""
+    shown = chunks[at].type == "OF" and type_at(chunks, at - 1) == "BE" and type_at(chunks, at + 1) == "NP"
+    return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if shown else None
 
 
 def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
@@ -676,7 +682,7 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         lay = (
-            type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
+            type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma in _RESTING and "AND" in (c.type for c in found)
         )
         if (
             chunk.type == "COMMA"
@@ -689,6 +695,8 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
                 first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
                 clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
             objects = sum(kind in ("PREP", "TPART", "OF") for kind in clause)
+            amid = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found[first:])
+            objects += amid and sum(chunk.type == "AND" for chunk in found[first:])
             places = clause[:1] in (["PREP"], ["ADV"]) and clause.count("NP") == objects
             if places and not (FINITE & set(clause)):
                 if lay:
@@ -713,6 +721,8 @@ def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+_RESTING = frozenset({"lay", "stand", "hang", "rest", "sit", "lean"})
+"""Verbs that turn a clause round: *and behind that, in a row, stand your letters*."""
 _SEATS = frozenset({"place", "pride", "spot", "position", "seat"})
 _COMMENTING = frozenset({"make", "mean", "let", "allow", "cause", "give", "prevent", "explain", "save", "help", "seem"})
 """Verbs of *which* that comment on a whole clause."""

@@ -10,6 +10,8 @@ from deixis.grammar.english.vocabulary.verbs import SAYING
 
 PAST_RELATIVE = re.compile(
     r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b"
+    r"|\bwhich\s+(?:(?:the|an?|my|his|her|our|their)\s+)?(?:[\w'\u2019-]+\s+){0,3}?(?:stood|hung|lay|sat)\b"
+    r"|\b(?:which|that|who)\s+for\s+(?:[\w'\u2019-]+\s+){0,3}?(?:years?|months?|weeks?|decades?|centuries|generations?)\b"
     r"|\b(?:which|that|who|where)\s+(?:[\w'\u2019-]+\s+){0,3}?once\s+\w+",
     re.IGNORECASE,
 )
@@ -94,12 +96,14 @@ UNREAL = re.compile(
     r"|,\s*an?\s+(?:error|mistake|slip|misprint)\b"
     r"|\bnothing\s+like\s+(?:as|so)\b"
     r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
-    r"|\b(?:theory|theories|story|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
+    r"|\b(?:theory|theories|story|map|guidebook|article|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
     r"(?:puts?|places?|has|locates?|says?|holds?|goes|claims?|suggests?)\b"
     r"|\b(?:says?|tells?|suggests?|shows?|proves?|know|knows|thinks?)\s+(?:us\s+)?(?:otherwise|differently)\b"
     r"|(?:^|[,;]\s*)(?:the|this|that|one|an?)\s+(?:old\s+)?(?:picture|photo|photograph|painting|drawing|catalogue|advert(?:isement)?|"
     r"brochure|leaflet|postcard|poster|film|video)\s+(?:pictures?|shows?|depicts?|portrays?)\b"
     r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
+    r"|\bin\s+(?:the|this|that|a)\s+(?:picture|photo(?:graph)?|painting|film|story|novel|dream)\s*[.!]?$"
+    r"|\b(?:is|are)\s+due\s+(?:on|in|at|under|behind|next|back)\b"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )
@@ -132,7 +136,7 @@ FRAMED = re.compile(
 """Beginning of a sentence that tells of another world than the one on the table: *in theory*, *the moment it is …*."""
 SELDOM = re.compile(
     r"(?:\bnot|n['\u2019]t)\s+(?:always|usually|normally|generally|often|necessarily|every\s+day|all\s+the\s+time)\b|"
-    r"^\s*(?:very\s+)?few\s+(?!of\b)",
+    r"^\s*(?:very\s+)?few\s",
     re.IGNORECASE,
 )
 """Words by which something is so at times, or of some things."""
@@ -152,6 +156,7 @@ PAST_TIME = re.compile(
     r"\b(?:yesterday|last\s+(?:night|week|month|year|spring|summer|autumn|winter|time)|formerly|originally|back\s+then"
     r"|in\s+those\s+days|in\s+the\s+old\s+days|at\s+(?:the|that)\s+time|once\s+upon\s+a\s+time|years?\s+ago)\b"
     r"|\buntil\s+(?:[\w'\u2019]+\s+){1,3}(?:was|were|had|broke|sold|died|left|came|went|got|took|\w+ed)\b"
+    r"|\bbefore\s+(?:[\w'\u2019]+\s+){1,3}(?:was|were|broke|sold|died|left|came|went|got|took|fell|\w+ed)\b"
     r"|\b(?:ceas|stopp|quitt)ed\s+(?:to\s+)?(?:be|being|stand|standing|lying|lie)\b",
     re.IGNORECASE,
 )

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import (
     CONSEQUENCE,
     ELSEWHERE,
@@ -35,6 +36,7 @@ from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
@@ -91,10 +93,12 @@ class Discourse(Statements):
 
     def _fragment(self, phrase: NounPhrase, sentence: int) -> None:
         """Read a sentence without a verb: *rucksack at the back*, or a heading that tells the order of a list."""
-        wished = UNREAL.search(self.text[self.references.start : self.end]) is not None
+        whole_sentence = self.text[self.references.start : self.end]
+        wished = UNREAL.search(whole_sentence) is not None
+        ended = PAST_TIME.search(whole_sentence) is not None and PRESENT.search(whole_sentence) is None
         self.how = Qualification(
             phrase.span, sentence, weight=0.5 if wished else 1.0, optional=wished, uncertain=wished,
-            guesses=self.sentences[sentence].guesses,
+            past=ended and not self.story, guesses=self.sentences[sentence].guesses,
         )  # fmt: skip
         for predicate in phrase.predicates:
             if predicate.relation == "row":
@@ -125,9 +129,11 @@ class Discourse(Statements):
                 for predicate in part.predicates:  # 'shells, front left, hollow side down'
                     self._predicate(subject, predicate, [])
                 continue
-            if part.pronoun == "one" and subject is not None and subject.members:
+            if part.pronoun == "one" and subject is not None and subject.members and not part.adjectives:
                 self._one_each(subject, part)
                 continue
+            if _can_be_verb(part):
+                self.how = self._guessed(Guess.BARE)
             subject = self._introduce(replace(part, predicates=()))
             if not self.story and PAST_RELATIVE.search(self.text[slice(*part.span)]):
                 self.how = replace(self.how, past=True)
@@ -165,7 +171,7 @@ class Discourse(Statements):
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
         if phrase is None or not phrase.head or phrase.determiner in ("a", "an", "no", "any"):
             return
-        if phrase.determiner is None and not phrase.plural:
+        if phrase.determiner is None and phrase.owner is None and not phrase.plural:
             return
         asked = self.references.find(replace(phrase, predicates=()))
         if asked is not None and asked.role is Role.THING:
@@ -207,6 +213,7 @@ class Discourse(Statements):
             past=self._is_past(clause), uncertain=uncertain, guesses=clause.guesses,
         )  # fmt: skip
         subject = clause.subject
+        self.how = replace(self.how, guesses=self.how.guesses | _guesses_of_subject(clause))
         if subject is not None and {m.determiner == "no" for m in subject.members} == {True, False}:
             members = tuple(
                 replace(m, determiner=None, negated=True) if m.determiner == "no" else m for m in subject.members
@@ -307,6 +314,7 @@ class Discourse(Statements):
                     for p in predicates
                 )
             )
+            and not self._is_thing(subject, predicates, clause)
             and self._of_last(predicates, subject)
         ):
             return
@@ -464,6 +472,12 @@ class Discourse(Statements):
                 self._predicate(last, predicate, [])
         return True
 
+    def _is_thing(self, subject: NounPhrase, predicates: tuple[Predicate, ...], clause: Clause) -> bool:
+        """Return True for parts that lie somewhere by themselves: *Blades are stored in the drawer*."""
+        begins = clause.span[0] == self.references.start and clause.mood is Mood.STATEMENT
+        places = any(p.arguments and p.relation in ("inside", "on", "under", "behind", "next_to") for p in predicates)
+        return begins and places and subject.plural and subject.determiner is None and not subject.adjectives
+
     def _superlative_apposition(self, phrase: NounPhrase, predicates: tuple[Predicate, ...]) -> None:
         last = next((f.subject for f in self.references.recent if f.subject is not None), None)
         if last is None:
@@ -473,6 +487,21 @@ class Discourse(Statements):
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
             if name is not None:
                 self._add(name, (last,), (), value=where)
+
+
+def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:
+    """Return the doubtful steps by which the subject of a clause is found."""
+    subject = clause.subject
+    if subject is None:
+        return frozenset()
+    vague = subject.pronoun in ("these", "those") and not (subject.head or subject.of or subject.adjectives)
+    return frozenset({Guess.THOSE} if vague else {Guess.BARE} if _can_be_verb(subject) else ())
+
+
+def _can_be_verb(phrase: NounPhrase) -> bool:
+    """Return True for one word without an article that is known as a verb and not as a noun: *listen up*."""
+    bare = phrase.determiner is None and phrase.owner is None and phrase.count is None and not phrase.adjectives
+    return bare and not phrase.known and phrase.head in verb_forms().keys() - PARTS
 
 
 _FRONTS = frozenset({"display", "dial", "lens", "logo", "opening", "writing", "picture", "window", "keyhole"})

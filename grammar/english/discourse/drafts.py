@@ -27,7 +27,7 @@ SUPPOSED = {
 
 RARE = frozenset({"hardly", "rarely", "seldom", "scarcely"})
 
-NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to"})
+NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to", "like"})
 """Relations of the parser that say nothing of where a thing is."""
 
 

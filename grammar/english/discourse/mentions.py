@@ -117,7 +117,8 @@ class Mentions(Drafting, ABC):
         if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
             self._say(besides, phrase.predicates, phrase, focus=False)
         elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT):
-            outer = self.how
+            outer, holder = self.how, self.references.holder
+            self.references.holder = relation
             self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
             own = self.text[phrase.span[0] : self._end_of_own(phrase)]
             if not self.story and PAST_RELATIVE.search(own):
@@ -125,7 +126,7 @@ class Mentions(Drafting, ABC):
             if UNSURE_RELATIVE.search(own):
                 self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
             self._say(entity, phrase.predicates, phrase, focus=False)
-            self.how = outer
+            self.how, self.references.holder = outer, holder
             restriction = self.references.recent[-1]
             if restriction.subject is entity and restriction.others:
                 self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}

@@ -115,6 +115,7 @@ class References:
     sentence: int = 0
     start: int = 0  # of the sentence in the text
     text: str = ""
+    holder: str | None = None  # relation of the phrase whose restrictions are read: 'in' for 'in the crate beside it'
     lost: list[Span] = field(default_factory=list)  # of the sentence, phrases that were not understood
     surface: Entity | None = None
     named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
@@ -496,6 +497,9 @@ class References:
             chosen = self._singular(relation, besides)
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
+        if word in ("he", "she") and relation is not None:
+            named = (e for f in self.recent for e in (f.subject, *f.others) if e is not None and e is not besides)
+            return next((entity for entity in named if entity.role is Role.PERSON), None)
         if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None
@@ -590,6 +594,10 @@ class References:
         if (further or (second and group is None)) and phrase.of is None and (last := self._last_thing(besides)):
             return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)  # 'on it, a smaller one'
         if group is None or not group.members:
+            many = self.recent[0].subject if self.recent and relation is None else None
+            bare = phrase.pronoun == "one" and phrase.determiner is None and not phrase.adjectives
+            if bare and many is not None and many.plural and not phrase.predicates:
+                return many  # 'fold the napkins and tuck one under each fork'
             return self._another_one(phrase, besides, relation)
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
@@ -645,8 +653,11 @@ class References:
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
         last = self.recent[0] if self.recent else None
+        if last is not None and self.holder in ("inside", "on") and last.relation == self.holder and relation != "under":
+            if last.sentence == self.sentence and last.others and last.subject is not besides:
+                return last.others[0]  # 'cans go in the box, glass in the crate beside it'
         if (
-            besides is not None and last is not None and relation in OPPOSITES and last.others
+            besides is not None and last is not None and relation in OPPOSITES.keys() - {"on", "under"} and last.others
             and OPPOSITES[relation] == last.relation and last.subject is not besides
         ):  # fmt: skip
             return last.others[0]
@@ -697,10 +708,15 @@ class References:
         for group in reversed(self.named):
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'
+        first = None if last is None or last.sentence != self.sentence else last.subject
+        if relation == "between" and first is not None and first is not besides and first.role is Role.THING:
+            if first.plural or first.size > 1:
+                return first  # 'the curtains were drawn, yet a glove was caught between them'
         if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
             return two
+        restrictions = [f.subject for f in self.recent[1:] if f.sentence == self.sentence and f.subject is not None]
         for focus in self.recent[:4]:
-            for entity in [focus.subject, *focus.others]:
+            for entity in [focus.subject, *focus.others, *restrictions]:  # 'a tank with two snails in it, and they …'
                 if entity is None or entity is besides or entity.role is not Role.THING:
                     continue
                 if entity.itself.members or entity.plural:

@@ -55,6 +55,11 @@ SUPPORTS = frozenset(
 )
 
 
+_OF_SEVERAL = frozenset(
+    {"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"}
+)
+"""Relations of several things together."""
+
 _MUTUAL = {"next_to": "near", "against": "touching"}
 """Relation of each to the others, by the relation to *each other*."""
 
@@ -74,6 +79,8 @@ class Relations(Mentions):
             relation = f"exactly_{relation}"
         if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
+        if relation in ("at", "on") and self._at_the_other(subject, predicate):
+            return
         found: list[Entity | Region] = []
         restricted, end = self.restricted.get(subject, (None, 0))
         options = [a for a in predicate.arguments if a.joined_by == "or"]
@@ -150,8 +157,10 @@ class Relations(Mentions):
         if relation == "between":
             self._between(subject, entities)
             return
+        if relation == "among" and self.text[slice(*predicate.span)].casefold().startswith(("of ", "out of ")):
+            return  # 'of the two cups one is on the tray'
         single = subject.size == 1 and not subject.plural and not entities
-        if single and relation in ("near_each_other", "parallel_each_other", "touching_each_other", "nested"):
+        if single and relation in _OF_SEVERAL:
             return
         if relation in COLLECTIVE and not (relation == "stacked" and entities):
             if subject.itself.members:
@@ -173,6 +182,16 @@ class Relations(Mentions):
             return
         for other in entities:
             self._pair(subject, relation, other, predicate.reversed)
+
+    def _at_the_other(self, subject: Entity, predicate: Predicate) -> bool:
+        """Read *a cooler at one end and the basket at the other*; False for another thing than an end."""
+        other = [a for a in predicate.arguments if a.pronoun == "other" and a.determiner == "the" and not a.head]
+        here = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation in ("end", "side", "edge")]
+        if not other or not here or subject in here[-1].subjects:
+            return False
+        value = OPPOSITES.get(here[-1].value or "")
+        self._add(here[-1].relation, (subject,), here[-1].arguments, value=value)
+        return True
 
     def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
         same_group = subject.itself.group is not None and subject.itself.group is other.itself.group

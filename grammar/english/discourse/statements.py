@@ -62,10 +62,12 @@ class Statements(Relations):
             lies = relation in DIRECTIONS or relation in ("on", "under", "inside")
             if relation in PLACES or (not predicate.arguments and lies):
                 return  # said of the part alone: 'the rounded edge is at the top'
+            if any(a.pronoun in ("it", "they") and not a.head for a in predicate.arguments):
+                return  # 'the drill, its cord wrapped around it'
             if relation == "upside_down":
                 return  # the label, and not the bottle
             subject = subject.whole
-        if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or subject.noun in GAPS:
+        if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
             owner, _, part = predicate.subject_part.head.rpartition(" ")

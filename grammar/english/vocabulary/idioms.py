@@ -6,6 +6,13 @@ IDIOMS = tuple(
     tuple(phrase.split())
     for phrase in (
         "above all",
+        *("thank heaven", "thank heavens", "thank god", "thank goodness", "heaven knows", "god knows", "as ever"),
+        *("as you know", "mind you", "needless to say", "so to speak", "if you like", "as you see", "as you can see"),
+        *("thank you for", "thanks for", "many thanks for", "of all things", "believe it or not", "strange to say"),
+        *("to be honest", "to be fair", "to be precise", "to be exact", "in my opinion", "in other words", "as it were"),
+        *("for the record", "for what it is worth", "come to think of it", "to my mind", "in any event", "if you will"),
+        *("the whole time", "the entire time", "all the time", "at all times", "most of the time", "from time to time"),
+        *("every time", "each time", "every day", "every night", "every morning"),
         "make sure that",
         "make sure",
         "be sure that",

@@ -161,6 +161,10 @@ ABSTRACT = frozenset(
         "cost",
         "value",
         "age",
+        *("layout", "setup", "description", "instruction", "method", "procedure", "purpose"),
+        *("blame", "pressure", "trust", "faith"),
+        *("trick", "advantage", "difficulty", "problem", "mistake", "effect", "mood", "atmosphere", "smell", "noise"),
+        *("silence", "weather", "tradition", "custom", "history", "law", "risk", "danger", "chance", "news"),
     ]
 )
 """Nouns of what has no place in a scene: *the decision on the table*."""

@@ -11,7 +11,7 @@ from deixis.grammar.english.vocabulary.tables import inverted, table, word_set
 NOT_PLACES = word_set(
     "monday tuesday wednesday thursday friday saturday sunday january february march april june july august september"
     " october november december noon midnight morning evening afternoon schedule fire hurry average purpose sale"
-    " holiday"
+    " holiday home work school contrast value dawn dusk sunset sunrise night lunch dinner breakfast birth death rights"
     " miniature bulk profile bloom reserve use stock storage transit preparation readiness advance turn total"
     " time question mind doubt trouble fashion general particular charge demand"
     " construction warranty guarantee repair risk order display account hold loan offer request discussion review"
@@ -26,7 +26,7 @@ NOT_PLACES = word_set(
 NEVER_PLACES = word_set(
     "contract law rule agreement pretence pretense impression influence auspices assumption supervision guidance"
     " misapprehension spell popularity fame career power treaty"
-    " name circumstance principle nature rumour rumor honour honor behalf occasion"
+    " page chapter paragraph agenda diet odds name circumstance principle nature rumour rumor honour honor behalf occasion"
 )
 """Nouns after which a preposition names no place, whatever stands before them: *under the contract*."""
 
@@ -105,7 +105,7 @@ without: without, with out
 
 # Relation words that stand alone: 'the cup in front', 'nearby'.
 _PLACES_ALONE = """
-in_front: straight ahead, directly ahead, dead ahead, in front, out front, up front, in the foreground
+in_front: in front, out front, up front, in the foreground
 behind: behind, in back, out back, in the background, beyond
 above: above, overhead, up above
 below: below, down below, underneath
@@ -134,17 +134,18 @@ stacked: on top of each other, on top of one another, one on top of the other, o
 stacked: stacked inside one another
 parallel_each_other: parallel, parallel to each other, in parallel
 one_each: one each, one apiece, one for each, respectively
-inward: inward, inwards
-outward: outward, outwards
+inward: inward, inwards, inboard
+outward: outward, outwards, outboard
 there: within sight, within reach, within easy reach, within arm 's reach
+there: straight ahead, directly ahead, dead ahead
 there: over there, there, here, out there, up there, down there
 apart: apart, away, far away
 alone: by itself, all by itself, on its own, all on its own, by themselves, on their own, all alone
 forward: forward, forwards, ahead
 backward: backward, backwards, rearward
 there: anywhere, everywhere, somewhere, nowhere
-up: up, upward, upwards, skyward
-down: down, downward, downwards
+up: up, upward, upwards, skyward, skywards, uppermost
+down: down, downward, downwards, lowermost
 """
 
 

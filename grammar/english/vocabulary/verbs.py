@@ -68,6 +68,21 @@ other: destroy, believe, weigh, bake, allow
 other: bind binds bound bound binding, upholster, gild, enamel, lacquer, varnish
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
 transitive: encircle, straddle
+other: catch catches caught caught catching, break breaks broke broken breaking, tear tears tore torn tearing
+other: hear hears heard heard hearing
+other: pay pays paid paid paying, light lights lit lit lighting, shut shuts shut shut shutting
+other: split splits split split splitting, feed feeds fed fed feeding, dig digs dug dug digging
+other: melt, freeze freezes froze frozen freezing, strike strikes struck struck striking, win wins won won winning
+other: shake shakes shook shaken shaking, spin spins spun spun spinning, cut cuts cut cut cutting
+other: pick, pluck, trap, squash, reach, arrive, enjoy, own, own, wish, decide, belong, blow blows blew blown blowing
+posture: ride rides rode ridden riding, rise rises risen risen rising, languish, lurk, bask, recline, jostle, flutter
+posture: drift, emerge, congregate, overhang overhangs overhung overhung overhanging, sprout, flop
+posture: grow grows grew grown growing, bloom, thrive, climb, creep creeps crept crept creeping, flourish, blossom
+posture: slant, topple, collapse, cling clings clung clung clinging, intrude, peek, abide, dwell dwells dwelt dwelt dwelling
+posture: dock, hitch, tether, latch, snag, interleave, immerse, submerge, chuck, fling flings flung flung flinging
+posture: toss, pop, plump, plant, deposit, dab, smear, hammer, tap, bung, whack, thumbtack, staple, stitch, peg
+transitive: span, cradle, accommodate, sport, boast, crown, cap, skirt, fringe, ring
+other: fly flies flew flown flying, swim swims swam swum swimming, crawl, leap leaps leapt leapt leaping, jump
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
 """
 
@@ -106,6 +121,14 @@ TRANSITIVE_RELATIONS = {
     "straddle": ("across", False),
     "occupy": ("inside", False),
     "fill": ("inside", False),
+    "span": ("across", False),
+    "cradle": ("inside", True),
+    "accommodate": ("inside", True),
+    "sport": ("with", False),
+    "boast": ("with", False),
+    "crown": ("on", False),
+    "cap": ("on", False),
+    "skirt": ("along", False),
     "enclose": ("around", False),
     "flank": ("each_side", False),
     "block": ("in_front", False),
@@ -129,12 +152,14 @@ PUT_VERBS = word_set(
     " plant heap pour scatter screw bolt glue nail tape strap sprinkle drizzle spoon load thread drape lower raise pin"
     " slot hook suspend fasten secure connect press wedge nestle space clip clamp tip park sit lodge sandwich group"
     " tie shelve stow bury hide cram slip pack feed affix anchor angle straddle"
+    " hammer tap pop chuck toss fling hitch latch staple stitch peg dab smear immerse submerge dock"
     " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan"
 )
 
 NAMED_LIKE_THINGS = word_set(
     "plant heap screw bolt glue nail tape strap spoon load thread pin slot hook press wedge clip clamp tip park group"
     " tie pack feed anchor angle top lower fit dot fill float cover position space spread stick stack pile line drop"
+    " hammer tap pop staple stitch peg dab smear dock hitch latch"
     " center centre turn roll fold fan prop nest seat store rest stand set place mount slide bring"
 )
 """Commands whose verb is a noun as well: *screw the bracket to it* and *screw holes*."""
@@ -194,6 +219,8 @@ _ONLY_PARTICIPLES = word_set(
     "draw sink wind drive sling snap loop burn bundle dump paste plaster stencil deposit clip clamp ring tower string"
     " range coil slip lower fill stow plant heap spoon load"
     " thread pack feed scoop dot ladle stretch swing"
+    " pop plump dab smear hammer tap staple stitch peg latch dock hitch cap crown ring light cut split shut catch break bloom"
+    " tear pick strike melt fringe sport boast cradle skirt"
 )
 """Verbs whose plain forms are nouns or adjectives more often."""
 
@@ -212,4 +239,5 @@ def _regular(lemma: str) -> dict[str, str]:
 
 _DOUBLED = frozenset({"set", "put", "sit", "run", "stop", "jut", "plug", "prop", "pin", "slot", "jam", "cram", "hug",
                       "fit", "tip", "drop", "step", "get", "overlap", "abut", "begin", "slip", "clip", "wrap", "sag",
-                      "bob", "strap", "drag", "transfer", "refer"})  # fmt: skip
+                      "bob", "strap", "drag", "transfer", "refer", "tap", "pop", "dab", "peg", "flop",
+                      "snag", "cap", "trap", "travel"})  # fmt: skip
