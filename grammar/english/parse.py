@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from deixis.grammar.english.chunking.chunk import JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.chunking.chunker import Chunker
 from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.possible_verbs import possible_verbs
+from deixis.grammar.english.chunking.shared_heads import with_shared_heads
 from deixis.grammar.english.clauses.assemble import Assembly, Found
 from deixis.grammar.english.clauses.build import Builder
 from deixis.grammar.english.clauses.built import Built, notes
@@ -90,12 +92,12 @@ def parse_english(
         if raw.step is None:
             lead = ()
         if deadline.passed:
-            raise ScriptTimeError(f"time limit reached after {count(len(found), 'sentence')}")
-        words = words_of(text, (raw.start, raw.end))
+            raise ScriptTimeError(_late(found))
+        words = with_shared_heads(words_of(text, (raw.start, raw.end)), nouns)
         first = 0
         while first < len(words):
             if deadline.passed:
-                raise ScriptTimeError(f"time limit reached after {count(len(found), 'sentence')}")
+                raise ScriptTimeError(_late(found))
             last = min(len(words), first + MAX_SENTENCE_WORDS)
             while last < len(words) and words[last].start < words[last - 1].end:
                 last -= 1  # keep the parts of a contraction together
@@ -106,6 +108,10 @@ def parse_english(
             if raw.step is None:
                 lead = _place_of_list(text, place, part, nouns, found[-1])
     return tuple(found)
+
+
+def _late(found: Sequence[Sentence]) -> str:
+    return f"time limit reached after {count(len(found), 'sentence')}; raise the time limit, or shorten the text"
 
 
 def _place_of_list(

@@ -32,7 +32,7 @@ MAX_ABBREVIATION = 4
 
 _PAIRED_DASHES = 2
 _DASHES = frozenset({"-", "\u2013", "\u2014"})
-_STRUCK = re.compile(r"~~[^~\n]+~~|(?<=[\s:;,])\((?:[A-Za-z]|[ivx]{1,4}|\d{1,2})\)(?=\s)")
+_STRUCK = re.compile(r"~~[^~\n]+~~|(?<=\w)\[\d{1,3}\]|(?<=[\s:;,])\((?:[A-Za-z]|[ivx]{1,4}|\d{1,2})\)(?=\s)")
 _CODES = re.compile(
     r"\((?:[A-Za-z]{1,6}\.?\s*)?\d[\w./-]*\)"
     r"|(?<=\w)\s\d+\s?[\u2013-]\s?\d+(?=[\s,;.])(?!\s*(?:cm|mm|m|inch|feet|ft)\b)"
@@ -236,6 +236,31 @@ def _join_asides(text: str, words: list[Word]) -> None:
             words[places[0]].norm = ":"
 
 
+def _read_hours(words: list[Word]) -> None:
+    """Read *at 10:30 on the clock* and *at the 10 o'clock position* as *at 10 o'clock*."""
+    for i in range(len(words) - 2, 0, -1):
+        hour = _HOUR.fullmatch(words[i].norm)
+        if hour is None or words[i - 1].norm not in ("at", "around", "about", "the"):
+            continue
+        after = [word.norm for word in words[i + 1 : i + 5]]
+        if after[:3] in (["on", "the", "clock"], ["on", "a", "clock"]):
+            last = i + 3 + (after[3:] == ["face"])
+        elif after[:2] == ["o'clock", "position"]:
+            last = i + 2
+        elif after[:1] == ["o'clock"] and ":" in words[i].norm:
+            last = i + 1
+        else:
+            continue
+        words[i].norm, words[i + 1].norm, words[i + 1].end = hour[1], "o'clock", words[last].end
+        del words[i + 2 : last + 1]
+        if words[i - 1].norm == "the":
+            del words[i - 1]
+
+
+_HOUR = re.compile(r"(1[0-2]|[1-9])(?::[0-5]\d)?")
+"""An hour of a clock face as a direction; minutes make no difference."""
+
+
 def _without_cleft(words: list[Word]) -> None:
     """Read *what you see behind the box is a cup* and *all that remains is a cup* without what only introduces."""
     norms = [word.norm for word in words[:8]]
@@ -432,13 +457,14 @@ def words_of(text: str, span: Span) -> list[Word]:
                 continue  # a pictograph, or a mark of one
             elif raw == "." and found and found[-1].norm in _ABBREVIATIONS and found[-1].end == start and end < span[1]:
                 continue
-            elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|":
+            elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|[]":
                 found.append(Word(raw, raw, start, end, False))
             continue
         for piece, is_first in _pieces(norm):
             shown = raw[: len(piece)] if is_first else piece
             found.append(Word(shown, piece, start, end, is_first))
     _join_asides(text, found)
+    _read_hours(found)
     _without_cleft(found)
     _deny_contrasts(found)
     _without_corrected(found)

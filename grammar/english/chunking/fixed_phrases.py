@@ -13,6 +13,7 @@ from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
     ADVERBS,
     CHAT_WORDS,
+    COLLECTIVES,
     GREETINGS,
     HEDGES,
     IS_FORMS,
@@ -164,6 +165,17 @@ class FixedPhraseChunker(JointChunker):
             and not self.norms[at + 3].endswith("ing")
         ):  # fmt: skip
             return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'
+        circumstance = self._circumstance(at)
+        if circumstance is not None and (related is None or related[0] <= at + 1):
+            return Chunk("ADVERB", at, circumstance, "circumstance")
+        if norm in _STARTING and self.norms[at + 1] in ("by", "with") and previous_joint:
+            form = self._verbs.get(self.norms[at + 2])
+            if form is not None and form.form == "ing" and form.lemma in PUT_VERBS:
+                return Chunk("PUT", at, at + 3, VerbGroup(form.lemma, "posture", "base"))  # 'begin by placing the cup'
+        if norm in _PARTICLES and self.norms[at + 1] in ("on", "at", "with", "by") and related is None:
+            return Chunk("ADVERB", at, at + 1, norm)  # 'brought in on the tray'
+        if norm in ("inward", "inwards", "outward", "outwards") and self.norms[at + 1] in ("to", "toward", "towards"):
+            return Chunk("ADVERB", at, at + 1, norm)
         if norm in ("itself", "themselves") and self._previous() == "NP":
             return Chunk("ADVERB", at, at + 1, norm)  # 'not in the box itself'
         if norm in ("consists", "consist", "comprises") and (self.norms[at + 1] == "of" or norm == "comprises"):
@@ -258,6 +270,22 @@ class FixedPhraseChunker(JointChunker):
             if self.norms[end] in GREETINGS:
                 end += 1
             return Chunk("ADVERB", at, end, norm)
+        return None
+
+    def _circumstance(self, at: int) -> int | None:
+        """Return the end of *at this time*, *in a formal setting*, *at a 45-degree angle*; None for other phrases."""
+        if self.norms[at] not in ("in", "at", "as", "on", "under"):
+            return None
+        for i in range(at + 1, at + 6):
+            norm = self.norms[i]
+            general = norm in _OCCASIONS and self.norms[at + 1] in _GENERAL
+            if (norm in _CIRCUMSTANCES or general) and not self.nouns.is_noun(i + 1):
+                if self.norms[i + 1 : i + 3] == ["of", "thumb"]:
+                    return i + 3
+                return None if self.norms[i + 1] in ("of", "'s", "to") else i + 1
+            several = norm == "of" and self.norms[i - 1] in COLLECTIVES | {"variety"}
+            if not norm[:1].isalnum() or (norm in prepositions() and not several) or norm in IS_FORMS:
+                return None
         return None
 
     def _subject_or_command(self, at: int) -> bool:
@@ -413,6 +441,20 @@ class FixedPhraseChunker(JointChunker):
         order = f"{sides[0]} to {sides[1]}"
         return Chunk("ADV", at, i, Relator(Preposition(order, "row")))
 
+
+_CIRCUMSTANCES = word_set(
+    "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
+)
+"""Nouns that name no place after *in*, *at*, *as*, *on* and *under*."""
+
+_OCCASIONS = word_set("setting settings case cases event instance situation situations household households")
+"""Nouns that name no place if they are general: *in a formal setting*, not *in the setting*."""
+
+_GENERAL = word_set("a an any some many most more few other certain every each no this that which both all")
+
+_STARTING = word_set("begin start commence finish continue")
+
+_PARTICLES = word_set("in out up down off over through")
 
 _DENIALS = tuple(
     tuple(phrase.split())

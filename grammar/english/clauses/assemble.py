@@ -376,7 +376,10 @@ class Assembly:
         return True
 
     def _at_the_hour(self, predicate: Predicate) -> Predicate:
-        """Return *between 4 and 5* and *at 3* as a direction from the centre of the clock."""
+        """Return *between 4 and 5* and *at 3* as a direction from the centre of the clock, or a part of the region."""
+        if predicate.value is not None and predicate.value.dimension == "clock" and not predicate.arguments:
+            part = predicate.relation if "_" not in predicate.relation else None  # 'at 9 o'clock': on the left
+            return replace(predicate, value=None, part=part)
         hours = [argument.count for argument in predicate.arguments if not argument.head]
         if self.clock is None or not hours or hours[0] is None or predicate.relation not in ("between", "at", "near"):
             return predicate

@@ -204,6 +204,8 @@ def _subject_follows(
     after = end + 1
     while types[after : after + 2] == ["OF", "NP"]:
         after += 2
+    if {"COMMA", "AND"} <= kinds and types[after : after + 2] == ["AND", "NP"]:
+        after += 2  # 'the forks go on the left, and knives and spoons on the right'
     following = types[after] if after < len(types) else ""
     puts = types[start] == "PUT" or (
         types[start : start + 3] == ["NP", "TVERB", "NP"]
