@@ -154,6 +154,8 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
             return Chunk("SUB", at, at + 1, norm)
+        if norm in ("before", "after") and previous in FINITE and self.chunks[-1].value.lemma == "come":
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'the salad fork comes before it'
         if norm in ("before", "after") and (
             after in ("you", "we", "i") or after.endswith("ing") or self._clause_follows(at + 1)
         ):

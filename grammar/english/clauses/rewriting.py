@@ -23,6 +23,7 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Preposition
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
 
 _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
@@ -82,6 +83,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
         _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
         _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+        _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -102,8 +104,10 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         inside = chunks[i + 1 : closing]
         said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
         if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
-            noun = replace(kept[-1].value, determiner="the", count=None)
-            named = Chunk("NP", kept[-1].start, kept[-1].end, noun, kept[-1].span)
+            aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
+            of = kept[0] if aimed and kept[0].type == "NP" else kept[-1]  # 'A is on the left of B (farthest from C)'
+            noun = replace(of.value, determiner="the", count=None)
+            named = Chunk("NP", of.start, of.end, noun, of.span)
             after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
             i = (closing or i) + 1
             continue
@@ -682,7 +686,9 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         lay = (
-            type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma in _RESTING and "AND" in (c.type for c in found)
+            type_at(chunks, i + 1) == "PUT"
+            and chunks[i + 1].value.lemma in _RESTING
+            and "AND" in (c.type for c in found)
         )
         if (
             chunk.type == "COMMA"
@@ -762,6 +768,62 @@ def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
         if aims and part == "bowl" and tool and whose.owner is not None:
             whose = replace(whose, head="tip")
         found[i] = replace(chunk, value=whose)
+    return found
+
+
+def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with a comma before *pointing* and *facing* that tell how a thing is put.
+
+    *Lay the knife above the plate pointing left* is read as *lay the knife above the plate, pointing left*.
+    """
+    found: list[Chunk] = []
+    put = False
+    for chunk in chunks:
+        if chunk.type in JOINT_TYPES:
+            put = False
+        placed = chunk.type == "PART" and chunk.value.lemma in PUT_VERBS and chunk.value.form != "ing"
+        put = put or chunk.type == "PUT" or placed
+        aims = chunk.type == "PART" and chunk.value.kind in ("point", "face")
+        aims = aims or (chunk.type == "PREP" and chunk.value.preposition.relation in ("pointing", "facing"))
+        place = found[-2].value.preposition.relation if type_at(found, len(found) - 2) == "PREP" else ""
+        held = place in ("on", "inside") and chunk.type == "PREP"  # 'put the lamp on the shelf facing the door'
+        if put and aims and place and not held and found[-1].type == "NP":
+            found.append(Chunk("COMMA", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
+        found.append(chunk)
+    return found
+
+
+def _with_places_of_pairs(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *with A on the left and B and C on the right* with the place after *B*, too."""
+    types = [chunk.type for chunk in chunks]
+    for i in range(3, len(chunks) - 5):
+        pair = types[i : i + 6] == ["AND", "NP", "AND", "NP", "PREP", "NP"] and "WITH" in types[:i]
+        start = i - 4 if pair and types[i - 4 : i] == ["WITH", "NP", "PREP", "NP"] else None
+        if start is None and pair and types[i - 6 : i] == ["WITH", "NP", "PREP", "NP", "OF", "NP"]:
+            start = i - 6
+        if start is None:
+            continue
+        at = (chunks[i + 1].span[1], chunks[i + 1].span[1])
+        place = [replace(chunk, span=at) for chunk in chunks[i + 4 : i + 6]]
+        return [*chunks[: i + 2], *place, *chunks[i + 2 :]]
+    return chunks
+
+
+def _with_places_of_nearest(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *is closest to the plate on the left* with a comma before the second place."""
+    found = list(chunks)
+    for i in range(len(found) - 4, -1, -1):
+        types = [chunk.type for chunk in found[i : i + 5]]
+        if types[:4] != ["PREP", "NP", "PREP", "NP"] or types[4:] == ["OF"]:
+            continue
+        near, second = found[i].value.preposition, found[i + 2]
+        if (
+            near.degree is Degree.SUPERLATIVE
+            and is_place(found[i + 3].value)
+            and second.value.preposition.phrase == "on"
+        ):
+            at = second.span[0]
+            found.insert(i + 2, Chunk("COMMA", second.start, second.start, None, (at, at)))
     return found
 
 

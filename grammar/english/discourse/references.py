@@ -653,7 +653,12 @@ class References:
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
         last = self.recent[0] if self.recent else None
-        if last is not None and self.holder in ("inside", "on") and last.relation == self.holder and relation != "under":
+        if (
+            last is not None
+            and self.holder in ("inside", "on")
+            and last.relation == self.holder
+            and relation != "under"
+        ):
             if last.sentence == self.sentence and last.others and last.subject is not besides:
                 return last.others[0]  # 'cans go in the box, glass in the crate beside it'
         if (

@@ -55,9 +55,7 @@ SUPPORTS = frozenset(
 )
 
 
-_OF_SEVERAL = frozenset(
-    {"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"}
-)
+_OF_SEVERAL = frozenset({"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"})
 """Relations of several things together."""
 
 _MUTUAL = {"next_to": "near", "against": "touching"}
@@ -357,8 +355,12 @@ class Relations(Mentions):
             and not GROUNDS.search(self.text[slice(*predicate.span)])
         ):
             before = next(f for f in self.references.recent if f.subject is not subject)
-            if before.others and OPPOSITES.get(before.relation or "") == predicate.relation:
+            opposite = OPPOSITES.get(before.relation or "") == predicate.relation
+            if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:
                 last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'
+            same = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (last,)]
+            if same and same[-1].arguments and Guess.OF_THE_LAST in same[-1].how.guesses:
+                last = same[-1].arguments[0]  # 'the bread plate above to the left, the glass above to the right'
             self.how = self._guessed(Guess.OF_THE_LAST)
             self._pair(subject, predicate.relation, last, False)
             if predicate.measure is not None and last.role is Role.THING:
