@@ -463,6 +463,10 @@ def words_of(text: str, span: Span) -> list[Word]:
         for piece, is_first in _pieces(norm):
             shown = raw[: len(piece)] if is_first else piece
             found.append(Word(shown, piece, start, end, is_first))
+    ends = len(found) - (not found[-1].is_word and found[-1].norm in (".", "!")) if found else 0
+    brackets = [i for i in range(ends) if found[i].norm in ("(", ")")]
+    if brackets == [0, ends - 1]:
+        del found[ends - 1], found[0]  # the whole sentence is in parentheses
     _join_asides(text, found)
     _read_hours(found)
     _without_cleft(found)

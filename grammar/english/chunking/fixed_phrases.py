@@ -172,7 +172,11 @@ class FixedPhraseChunker(JointChunker):
             form = self._verbs.get(self.norms[at + 2])
             if form is not None and form.form == "ing" and form.lemma in PUT_VERBS:
                 return Chunk("PUT", at, at + 3, VerbGroup(form.lemma, "posture", "base"))  # 'begin by placing the cup'
-        if norm in _PARTICLES and self.norms[at + 1] in ("on", "at", "with", "by") and related is None:
+        if (
+            norm in _PARTICLES
+            and self.norms[at + 1] in ("on", "at", "with", "by")
+            and (related is None or related[0] == at + 1)
+        ):
             return Chunk("ADVERB", at, at + 1, norm)  # 'brought in on the tray'
         if norm in ("inward", "inwards", "outward", "outwards") and self.norms[at + 1] in ("to", "toward", "towards"):
             return Chunk("ADVERB", at, at + 1, norm)
@@ -238,7 +242,11 @@ class FixedPhraseChunker(JointChunker):
             and self.norms[at + 1] in PUT_VERBS
             and self._previous()
             and self.nouns.starts(at + 2)
-            and (self.nouns.is_determiner(at + 2) or self.norms[at + 2] in ("it", "them"))
+            and (
+                self.nouns.is_determiner(at + 2)
+                or self.norms[at + 2] in ("it", "them")
+                or (self.norms[at - 1] in _JUDGEMENTS and self.nouns.is_noun(at + 2))
+            )
         ):
             denied = any(word in NEGATIONS or word in _FORBIDDING for word in self.norms[:at])
             modal = None if denied or self._is_told_to(at) else "might"
@@ -469,7 +477,10 @@ _DENIALS = tuple(
 )  # fmt: skip
 """Denials that can stand before their clause and turn its words round."""
 
-_JUDGEMENTS = word_set("true clear certain important essential vital good bad nice best better the case fact sure")
+_JUDGEMENTS = word_set(
+    "true clear certain important essential vital good bad nice best better the case fact sure acceptable fine polite"
+    " proper correct customary usual common traditional advisable"
+)
 
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
 

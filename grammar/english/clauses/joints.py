@@ -10,6 +10,7 @@ from deixis.grammar.english.clauses.editing import type_at
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.function_words import PERSONS
+from deixis.grammar.english.vocabulary.nouns import last_word
 
 _WITH_LISTS = frozenset({"between", "among", "next_to", "near", "with", "from", "opposite"})
 """Relations whose object is often a list."""
@@ -217,6 +218,8 @@ def _subject_follows(
     )
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
+    if complete and kinds == {"COMMA"} and types[end : end + 4] == ["NP", "AND", "NP", "PREP"]:
+        return _is_opposite(chunks, start, at, end + 3)
     shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
     if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
         phrase = chunks[end].value
@@ -243,6 +246,13 @@ def _subject_follows(
     if "COMMA" in kinds and complete and "AND" in kinds and following in (PREDICATES - {"WITH"}):
         return not _in_list(chunks, types, start, at, i)
     return kinds == {"AND"} and complete and _verb_left_out(chunks, types, start, at, end)
+
+
+def _is_opposite(chunks: list[Chunk], start: int, at: int, place: int) -> bool:
+    """Return True for a place on the other side: *A go to the left of B, C and D to the right of E*."""
+    sides = [last_word(c.value.head) for c in chunks[start:at] if c.type == "NP" and is_place(c.value)]
+    after = chunks[place + 1].value.head if type_at(chunks, place + 1) == "NP" else ""
+    return {"left": "right", "right": "left"}.get(last_word(after)) in sides
 
 
 def _list_of_with(types: list[str], start: int, at: int) -> bool:

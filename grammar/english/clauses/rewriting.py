@@ -141,7 +141,10 @@ def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _without_adverbs_apart(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out an adverb between commas, and the commas before a verb: *the cup, in turn, stands behind the jug*."""
+    """Leave out an adverb between commas, the commas before a verb, and what joins an adverb with one of a place.
+
+    *The cup, in turn, stands behind the jug* is read as *the cup stands behind the jug*.
+    """
     found: list[Chunk] = []
     i = 0
     while i < len(chunks):
@@ -152,6 +155,10 @@ def _without_adverbs_apart(chunks: list[Chunk]) -> list[Chunk]:
             verb = type_at(chunks, i - 1) == "NP" and type_at(chunks, end + 1) in FINITE
             found += chunks[i + 1 : end] if verb else chunks[i:end]
             i = end + 1
+        elif (
+            chunks[i].type == "AND" and type_at(found, len(found) - 1) == "ADVERB" and type_at(chunks, i + 1) == "PREP"
+        ):
+            i += 1  # 'place the fork horizontally and directly above the plate'
         else:
             found.append(chunks[i])
             i += 1

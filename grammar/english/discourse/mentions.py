@@ -60,6 +60,8 @@ class Mentions(Drafting, ABC):
 
     def _subject(self, subject: NounPhrase, predicates: tuple[Predicate, ...]) -> Entity | None:
         """Return the subject of a clause; one new object for each member of a group that an argument quantifies."""
+        if subject.head in _SIDES:
+            return None
         if (
             subject.determiner in ("a", "an", None)
             and subject.head
@@ -116,7 +118,7 @@ class Mentions(Drafting, ABC):
             self._say(besides, phrase.predicates, phrase, focus=False)
         if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
             self._say(besides, phrase.predicates, phrase, focus=False)
-        elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT):
+        elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT) and phrase.head not in _SIDES:
             outer, holder = self.how, self.references.holder
             self.references.holder = relation
             self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
@@ -245,3 +247,7 @@ _BESIDE = DIRECTIONS | {"near", "next_to", "between", "under", "opposite"}
 """Relations that, after a wall or a floor, are those of the thing that is on it: *on the wall near the exit*."""
 
 _LIMBS = frozenset({"elbow", "hand", "arm", "foot", "knee", "shoulder", "side"})
+
+
+_SIDES = frozenset({"left", "right"})
+"""Nouns that name a side and no thing, of which nothing is said."""
