@@ -224,6 +224,7 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
     """Parse one clause; at a chunk that does not fit, end the clause there and begin another one, or leave it out."""
     hedge, segment = assembly.without_frame(segment)
     assembly.is_coordinated = segment.is_coordinated
+    assembly.named = [chunk.value for chunk in segment.chunks if chunk.type == "NP" and chunk.value.head]
     chunks = classify(segment)
     if not chunks:
         return

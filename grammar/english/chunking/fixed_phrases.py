@@ -249,7 +249,8 @@ class FixedPhraseChunker(JointChunker):
             )
         ):
             denied = any(word in NEGATIONS or word in _FORBIDDING for word in self.norms[:at])
-            modal = None if denied or self._is_told_to(at) else "might"
+            used = "used" in self.norms[:at]  # 'it may be used to cut bread or to spread butter on it'
+            modal = None if denied or (self._is_told_to(at) and not used) else "might"
             return Chunk(
                 "PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", modal, positive=not denied)
             )

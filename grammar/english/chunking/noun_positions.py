@@ -375,6 +375,8 @@ class NounFinder:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
         if form.form == "ing":
+            if norm == "setting" and before in ("place", "table") and not self.starts(at + 1):
+                return True
             if (
                 before in ("other", "others", "one")
                 and form.kind in ("posture", "lean")
@@ -578,6 +580,8 @@ class NounFinder:
 
     def _compound_ing(self, at: int, before: str, after: str) -> bool:
         """Return True for the first part of a compound: *rolling pin*, *washing machine*."""
+        if self._nouns.knows(f"{self.norms[at]} {after}"):
+            return True
         if not self._nounish(at + 1) or is_adjective(after) or after in DIRECTION_WORDS:
             return False
         return (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 
 from deixis.grammar.english.chunking.chunk import Chunk, VerbGroup
@@ -17,6 +18,8 @@ from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
+_REFERS_BACK = re.compile(r"\b(?:it|them|they|these|those)\b", re.IGNORECASE)
+"""Pronouns that can stand for a thing of a condition."""
 _FRAMES = frozenset({"facing", "from"})
 _PLACING = frozenset(
     {
@@ -98,6 +101,7 @@ class Assembly:
     shared: tuple[Predicate, ...] = ()  # place before a list: 'in the box, put A on the left, B on the right'
     hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
+    named: list[NounPhrase] = field(default_factory=list)  # nouns of the clause that is put together
     opens_list: bool = False  # True if a colon follows the clause
     leads: bool = False  # True if a comma and a command follow: 'on it, stand the kettle'
     is_coordinated: bool = False  # True for a condition after *and*
@@ -190,6 +194,11 @@ class Assembly:
             if subject is not None and subject.phrase.head and subject.phrase.determiner not in ("no", "any"):
                 text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
                 self.supposed.append(Clause(replace(subject.phrase, predicates=()), (), span, condition=text))
+            elif _REFERS_BACK.search(self.text, span[1], self.raw.end):  # 'if you use napkins, put them on the plate'
+                text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+                self.supposed += [
+                    Clause(replace(one, predicates=()), (), span, condition=text) for one in self.named[:1]
+                ]
             return
         if link == ":" and self.condition is not None and (self.clauses or self.fragments):
             self.condition = None  # 'when the guests arrive, the table looks like this: …'

@@ -218,8 +218,10 @@ def _subject_follows(
     )
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
-    if complete and kinds == {"COMMA"} and types[end : end + 4] == ["NP", "AND", "NP", "PREP"]:
-        return _is_opposite(chunks, start, at, end + 3)
+    if complete and kinds in ({"COMMA"}, {"AND"}) and types[end : end + 4] == ["NP", "AND", "NP", "PREP"]:
+        opposite = _is_opposite(chunks, start, at, end + 3)
+        if opposite or kinds == {"COMMA"}:
+            return opposite
     shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
     if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
         phrase = chunks[end].value

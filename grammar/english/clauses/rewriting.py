@@ -779,25 +779,44 @@ def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks with a comma before *pointing* and *facing* that tell how a thing is put.
+    """Return the chunks with a comma before what tells how and where else a thing is put, after its place.
 
-    *Lay the knife above the plate pointing left* is read as *lay the knife above the plate, pointing left*.
+    *Lay the knife above the plate pointing left* is read as *lay the knife above the plate, pointing left*, and *put the
+    plate at the centre of the mat about 2 cm from its edge* as *…, about 2 cm from its edge*.
     """
     found: list[Chunk] = []
     put = False
-    for chunk in chunks:
+    for i, chunk in enumerate(chunks):
         if chunk.type in JOINT_TYPES:
             put = False
         placed = chunk.type == "PART" and chunk.value.lemma in PUT_VERBS and chunk.value.form != "ing"
         put = put or chunk.type == "PUT" or placed
         aims = chunk.type == "PART" and chunk.value.kind in ("point", "face")
-        aims = aims or (chunk.type == "PREP" and chunk.value.preposition.relation in ("pointing", "facing"))
-        place = found[-2].value.preposition.relation if type_at(found, len(found) - 2) == "PREP" else ""
-        held = place in ("on", "inside") and chunk.type == "PREP"  # 'put the lamp on the shelf facing the door'
-        if put and aims and place and not held and found[-1].type == "NP":
+        turned = chunk.type == "PREP" and chunk.value.preposition.relation in ("pointing", "facing")
+        again = chunk.type == "PREP" and not _EXACTLY.isdisjoint(chunk.value.adverbs)
+        again = again or (chunk.type == "MEASURE" and type_at(chunks, i + 1) == "PREP")
+        at = len(found) - 2
+        if put and chunk.type == "PREP" and _is_filled(found):  # 'put a jug filled with water between the cups'
+            found.insert(at, Chunk("COMMA", found[at].start, found[at].start, None, (found[at].span[0],) * 2))
+            found += [Chunk("COMMA", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])), chunk]
+            continue
+        while type_at(found, at) == "OF" and type_at(found, at - 1) == "NP":
+            at -= 2
+        place = found[at].value.preposition.relation if type_at(found, at) == "PREP" else ""
+        held = place in ("on", "inside") and not aims  # 'put the lamp on the shelf facing the door'
+        if put and place and not held and type_at(found, len(found) - 1) == "NP" and (aims or turned or again):
             found.append(Chunk("COMMA", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
         found.append(chunk)
     return found
+
+
+_EXACTLY = frozenset({"just", "directly", "immediately", "right", "slightly"})
+
+
+def _is_filled(chunks: list[Chunk]) -> bool:
+    """Return True for chunks that end with a thing and what it is filled with."""
+    with_phrase = [chunk.type for chunk in chunks[-3:]] == ["NP", "WITH", "NP"]
+    return with_phrase and chunks[-2].value.preposition.phrase.endswith("filled with")
 
 
 def _with_places_of_pairs(chunks: list[Chunk]) -> list[Chunk]:
