@@ -190,7 +190,8 @@ def _parsed(
     finally:
         notes.reset(before)
     total = [word for word in words if word.is_word]
-    spans = sorted({(note.span, note.reason): note for note in unknown}.values(), key=lambda note: note.span)
+    notes_of_words = [note for note in unknown if note.span[0] < note.span[1]]  # no words that were put in
+    spans = sorted({(note.span, note.reason): note for note in notes_of_words}.values(), key=lambda note: note.span)
     missed = sum(any(note.span[0] <= word.start < note.span[1] for note in spans) for word in total)
     sentence = Sentence(
         text=text[raw.start : raw.end],

@@ -375,7 +375,7 @@ class NounFinder:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
         if form.form == "ing":
-            if norm == "setting" and before in ("place", "table") and not self.starts(at + 1):
+            if norm == "setting" and before in ("place", "table") and not self.is_determiner(at + 1):
                 return True
             if (
                 before in ("other", "others", "one")

@@ -207,13 +207,13 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
-    """Find the person for whom something is: *I put out a bowl for you, with a spoon in it*."""
-    helped = (
-        chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and type_at(chunks, at + 1) == "NP"
-        and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
-        and type_at(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"} and at > 0
-    )  # fmt: skip
-    return (at + 2, None) if helped else None
+    """Find for whom or for what a thing is: *put out a bowl for you*, *put the glass for the guest right of the cup*."""
+    if not (chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and at > 0):
+        return None
+    person = type_at(chunks, at + 1) == "NP" and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
+    helped = person and type_at(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"}
+    types = [chunk.type for chunk in chunks[max(0, at - 2) : at + 3]]
+    return (at + 2, None) if helped or types == ["PUT", "NP", "PREP", "NP", "PREP"] else None
 
 
 def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
@@ -787,8 +787,7 @@ def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
     found: list[Chunk] = []
     put = False
     for i, chunk in enumerate(chunks):
-        if chunk.type in JOINT_TYPES:
-            put = False
+        put = put and chunk.type not in FINITE
         placed = chunk.type == "PART" and chunk.value.lemma in PUT_VERBS and chunk.value.form != "ing"
         put = put or chunk.type == "PUT" or placed
         aims = chunk.type == "PART" and chunk.value.kind in ("point", "face")
@@ -803,14 +802,18 @@ def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
         while type_at(found, at) == "OF" and type_at(found, at - 1) == "NP":
             at -= 2
         place = found[at].value.preposition.relation if type_at(found, at) == "PREP" else ""
-        held = place in ("on", "inside") and not aims  # 'put the lamp on the shelf facing the door'
-        if put and place and not held and type_at(found, len(found) - 1) == "NP" and (aims or turned or again):
+        of_place = place in ("on", "inside") and not _names_place(found, at + 1)  # 'on the shelf facing the door'
+        if put and place and type_at(found, len(found) - 1) == "NP" and (aims or (not of_place and (turned or again))):
             found.append(Chunk("COMMA", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
         found.append(chunk)
     return found
 
 
 _EXACTLY = frozenset({"just", "directly", "immediately", "right", "slightly"})
+
+
+def _names_place(chunks: list[Chunk], at: int) -> bool:
+    return type_at(chunks, at) == "NP" and is_place(chunks[at].value)
 
 
 def _is_filled(chunks: list[Chunk]) -> bool:
@@ -829,9 +832,7 @@ def _with_places_of_pairs(chunks: list[Chunk]) -> list[Chunk]:
             start = i - 6
         if start is None:
             continue
-        at = (chunks[i + 1].span[1], chunks[i + 1].span[1])
-        place = [replace(chunk, span=at) for chunk in chunks[i + 4 : i + 6]]
-        return [*chunks[: i + 2], *place, *chunks[i + 2 :]]
+        return [*chunks[: i + 2], *chunks[i + 4 : i + 6], *chunks[i + 2 :]]
     return chunks
 
 

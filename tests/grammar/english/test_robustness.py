@@ -138,6 +138,7 @@ def test_any_text(text: str) -> None:
 @settings(max_examples=125, deadline=None)
 @example("with no")
 @example("n't")
+@example("stands you left the")
 @example("a cup ) beyond the plate, its handle towards the empty chair")
 def test_any_words(text: str) -> None:
     check(text)
