@@ -427,6 +427,8 @@ class NounFinder:
         commanded = at < 2 or self.norms[at - 2] in ("and", ",", "then", "never", "not", "please", "always", ";", ":")
         if form.form == "s" and before in PUT_VERBS and commanded and self._nouns.singular(norm)[1]:
             return True  # 'keep drinks away from it'
+        if form.form == "s" and form.kind == "transitive" and after in _CLAUSE_ENDS and self._nouns.singular(norm)[1]:
+            return True  # 'the holes in the corner blocks.'
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
         stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
         if stands and before in PLACE_NOUNS:

@@ -687,7 +687,10 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     phrase = noun.phrase
     last = phrase.predicates[-1] if phrase.predicates else None
     part = last.subject_part if last is not None else None
-    if last is None or part is None or part.owner is None or part.owner.pronoun not in ("it", "they"):
+    if last is None or part is None:
+        return noun, ()
+    own = part.owner is not None and part.owner.pronoun in ("it", "they")
+    if not own and not (part.owner is None and part.determiner == "the" and last.relation in ("facing", "pointing")):
         return noun, ()
     kept = phrase.predicates[:-1]
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)

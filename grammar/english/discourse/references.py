@@ -322,6 +322,8 @@ class References:
         for entity in sorted(
             latest_first,
             key=lambda entity: (
+                not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
+                and entity.born < self.sentence and entity.noun == phrase.head,
                 entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
             ),
