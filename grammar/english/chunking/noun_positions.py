@@ -431,7 +431,7 @@ class NounFinder:
             return True  # 'the holes in the corner blocks.'
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
         stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
-        if stands and before in PLACE_NOUNS:
+        if stands and (before in PLACE_NOUNS or (is_adjective(before) and self._nouns.knows(before))):
             return False  # 'in the middle stands the crucifix'
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'

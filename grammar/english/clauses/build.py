@@ -34,7 +34,7 @@ from deixis.grammar.english.tree import (
     Viewpoint,
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
-from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, last_word
+from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, SURFACES, last_word
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NEVER_PLACES, NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -272,7 +272,9 @@ class Builder(Transformer[Any, Built]):
             return Noun(_restricted(noun, mods))
         if is_place(noun) and not noun.predicates:
             return _place_with(noun, tuple(mods))
-        outer = tuple(p for p in mods if p.of_one) if noun.plural else ()
+        flat_below = last_word(noun.head) in SURFACES  # 'the cake on the windowsill with a cloth over it'
+        over = {p.relation for p in mods if p.of_one} <= {"above", "around"}
+        outer = tuple(p for p in mods if p.of_one) if noun.plural or (flat_below and over) else ()
         if outer:  # 'the plate above the forks with a knife across it'
             mods = tuple(p for p in mods if not p.of_one)
             return Noun(_restricted(noun, mods) if mods else noun, outer)

@@ -139,7 +139,7 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 ]
                 i += 1
                 continue
-            if following is not None and lemma in _RANGING and following.relation not in ("row", "with"):
+            if following is not None and lemma in _RANGING and following.relation not in ("row", "with", "inside"):
                 found.append(Predicate("row", (), predicate.span, positive=predicate.positive))
             if following is not None and lemma in _SHAPING and "into" in following.adverbs:
                 misunderstood(following.span, "this says what shape something gets, not where it is")

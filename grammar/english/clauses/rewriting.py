@@ -571,7 +571,7 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
             i == 2 and ends and [c.type for c in chunks[:3]] == ["NP", "COLON", "NP"] and not chunk.value.plural
             and last_word(chunk.value.head) in VESSELS | HOLDERS and chunk.value.determiner in (None, "the")
             and last_word(chunks[0].value.head) not in VESSELS | HOLDERS | SURFACES and bool(chunks[0].value.head)
-            and not any(other.type in FINITE for other in chunks)
+            and not any(other.type in FINITE for other in chunks) and chunk.value.owner is None
         )  # fmt: skip
         noted = (
             chunk.type == "NP" and not found and ends and type_at(chunks, i + 1) == "COMMA" and not chunk.value.plural
