@@ -243,7 +243,11 @@ class FixedPhraseChunker(JointChunker):
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
                 return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
-        if norm in _STEPS and self._previous() in ("", "CUT", "THEN", "AND", "COMMA") and self._subject_or_command(at + 1):
+        if (
+            norm in _STEPS
+            and self._previous() in ("", "CUT", "THEN", "AND", "COMMA")
+            and self._subject_or_command(at + 1)
+        ):
             return Chunk("ADVERB", at, at + 1, norm)  # 'first you lay the cloth'
         if norm in CHAT_WORDS and self.norms[at + 1] in ("", ",", ".", ":", "!", "?", ";"):
             return Chunk("ADVERB", at, at + 1, norm)

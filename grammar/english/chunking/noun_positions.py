@@ -440,7 +440,8 @@ class NounFinder:
             return True  # 'with the cotton rolls behind it'
         first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
-            first > 1 and not self.is_determiner(at - 1) and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
+            first > 1 and not self.is_determiner(at - 1) and form.form == "base"
+            and self.norms[first - 1] == "and" and "and" not in self.norms[first:at]
             and form.kind in ("posture", "lean") and self._predicate_follows(at)
             and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
         ):  # fmt: skip
@@ -580,7 +581,8 @@ class NounFinder:
 
     def _compound_ing(self, at: int, before: str, after: str) -> bool:
         """Return True for the first part of a compound: *rolling pin*, *washing machine*."""
-        if not self._nounish(at + 1) or is_adjective(after) or after in DIRECTION_WORDS:
+        described = is_adjective(after) and not (is_material_noun(after) and not self._nounish(at + 2))
+        if not self._nounish(at + 1) or described or after in DIRECTION_WORDS:
             return False
         return (
             at == 0 or before in self._closed or not before[0].isalpha() or is_adjective(before) or before in ORDINALS

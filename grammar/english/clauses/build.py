@@ -361,9 +361,10 @@ class Builder(Transformer[Any, Built]):
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
             return (turned, *noun.phrase.predicates, *extra)
-        person = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("me", "you", "we")
-        if person and noun.phrase.head in ("back", "rear") and relation in ("at", "on", "inside", "to"):
-            return (Predicate("behind", (noun.phrase.owner,), span, positive=relator.positive), *extra)
+        person = noun.phrase.owner
+        viewed = person is not None and person.pronoun in ("me", "you", "we") and noun.phrase.head in ("back", "rear")
+        if person is not None and viewed and relation in ("at", "on", "inside", "to"):  # 'the window at my back'
+            return (Predicate("behind", (person,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
@@ -414,10 +415,10 @@ class Builder(Transformer[Any, Built]):
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
         if noun.phrase.head.rpartition(" ")[2] in _ARRANGEMENTS and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            return extra
+            return (Predicate("there", (), span, positive=relator.positive), *extra)
         manner = relation == "by" and noun.phrase.head in _MANNERS
-        bare = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
-        if relation in ("by", "at") and bare and not noun.phrase.known and not noun.phrase.adjectives:
+        unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
+        if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:
             misunderstood(span, f"'{noun.phrase.head}' is not a place")  # 'by contrast', 'at dusk'
             return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
@@ -784,7 +785,28 @@ _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edg
 
 
 _LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
-_ARRANGEMENTS = frozenset({"setting", "arrangement", "layout", "style", "fashion", "manner", "order"})
+_ARRANGEMENTS = frozenset(
+    {
+        "triangle",
+        "semicircle",
+        "pattern",
+        "fan",
+        "pyramid",
+        "arc",
+        "spiral",
+        "diamond",
+        "grid",
+        "formation",
+        "heap",
+        "setting",
+        "arrangement",
+        "layout",
+        "style",
+        "fashion",
+        "manner",
+        "order",
+    }
+)
 _QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
 _FASTENING = word_set(
     "attach fix secure fasten screw bolt nail tape glue tie strap clip clamp pin connect join wedge press push wrap"

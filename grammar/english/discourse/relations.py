@@ -55,9 +55,7 @@ SUPPORTS = frozenset(
 )
 
 
-_OF_SEVERAL = frozenset(
-    {"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"}
-)
+_OF_SEVERAL = frozenset({"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"})
 """Relations of several things together."""
 
 _MUTUAL = {"next_to": "near", "against": "touching"}
