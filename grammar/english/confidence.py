@@ -2,8 +2,9 @@
 
 Most facts come from clauses that the grammar takes whole, whose phrases name their things. A *guess* is a step at which
 the reader had to choose without support in the words: a clause that begins without a joint after another one, a
-predicate without a subject, the thing that a direction is from. The confidence of a fact is the share of right facts
-without guesses, multiplied by a factor for each guess. Facts below :data:`MIN_CONFIDENCE` are not asserted.
+predicate without a subject, the thing that a direction is from, a bare word that can be a verb as well. The confidence
+of a fact is the share of right facts without guesses, multiplied by a factor for each guess. Facts below
+:data:`MIN_CONFIDENCE` are not asserted.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from enum import StrEnum
 
-RIGHT_WITHOUT_GUESSES = 0.96
-"""Share of right facts among those without a guess."""
+RIGHT_WITHOUT_GUESSES = 0.87
+"""Share of right facts among those without a guess, in texts for which the reader was not changed."""
 MIN_CONFIDENCE = 0.75
 """Smallest confidence of a fact that is asserted."""
 
@@ -32,17 +33,23 @@ class Guess(StrEnum):
 
 
 SHARE_RIGHT = {
-    Guess.RUN_ON: 0.67,
+    Guess.RUN_ON: 0.72,
     Guess.CUT_SHORT: 0.78,
-    Guess.NO_SUBJECT: 0.43,
-    Guess.ACCOMPANIED: 0.4,
-    Guess.OF_THE_LAST: 0.81,
-    Guess.PRONOUN: 0.92,
+    Guess.NO_SUBJECT: 0.5,
+    Guess.ACCOMPANIED: 0.3,
+    Guess.OF_THE_LAST: 0.8,
+    Guess.PRONOUN: 0.87,
     Guess.THOSE: 0.33,
     Guess.BARE: 0.22,
     Guess.ACTION: 0.6,
 }
-"""Share of right facts among those with one guess."""
+"""Share of right facts among those with one guess.
+
+Fitted on texts in tests/grammar/english/texts: the guesses that occur fewer than ten times there, or mostly in texts
+that the reader was changed for, on facts that earlier readers read from texts before they were changed for them.
+Unknown nouns, the number of words left out, the length of a clause and the distance between subject and place tell
+little: with all of them, a logistic regression keeps 0.89 of the right facts at a share of 0.89.
+"""
 
 
 def confidence(guesses: Iterable[Guess]) -> float:
@@ -65,7 +72,7 @@ def confidence(guesses: Iterable[Guess]) -> float:
     Examples
     --------
     >>> confidence([]), round(confidence([Guess.OF_THE_LAST, Guess.PRONOUN]), 2)
-    (0.96, 0.8)
+    (0.87, 0.8)
     """
     share = RIGHT_WITHOUT_GUESSES
     for guess in sorted(guesses):  # in one order, so that the last digit is the same in each process

@@ -90,7 +90,7 @@ class Chunker(FixedPhraseChunker):
         )
 
     def _is_material_here(self, at: int, end: int) -> bool:
-        """Return True for a material, or a side after *whose*, that is a noun: *neither paper nor cloth*, *of tweed*."""
+        """Return True for a material, or a side after *whose*, that is a noun: *neither paper nor cloth*."""
         before = [chunk.type for chunk in self.chunks[-2:]]
         listed = before[-1:] == ["OF"] or before in (["NP", "AND"], ["NP", "OR"])
         return (listed and is_material_noun(self.norms[end - 1])) or (

@@ -49,6 +49,9 @@ class JointChunker(VerbChunker):
             and any(c.type == "PUT" and c.value.lemma == "keep" for c in self.chunks)
         ):  # fmt: skip
             return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
+        excepts = (norm, after) in (("apart", "from"), ("aside", "from")) and previous in ("", "COMMA", "CUT")
+        if excepts:
+            return Chunk("PREP", at, at + 2, Relator(Preposition("apart from", "-")))  # 'apart from the lid, …'
         if norm == "by" and self._is_name(at + 1):
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'a seascape by Turner'
         form = self._verbs.get(self.norms[at + 2])

@@ -429,9 +429,11 @@ class NounFinder:
         commanded = at < 2 or self.norms[at - 2] in ("and", ",", "then", "never", "not", "please", "always", ";", ":")
         if form.form == "s" and before in PUT_VERBS and commanded and self._nouns.singular(norm)[1]:
             return True  # 'keep drinks away from it'
+        if form.form == "s" and form.kind == "transitive" and after in _CLAUSE_ENDS and self._nouns.singular(norm)[1]:
+            return True  # 'the holes in the corner blocks.'
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
         stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
-        if stands and before in PLACE_NOUNS:
+        if stands and (before in PLACE_NOUNS or (is_adjective(before) and self._nouns.knows(before))):
             return False  # 'in the middle stands the crucifix'
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
@@ -440,7 +442,8 @@ class NounFinder:
             return True  # 'with the cotton rolls behind it'
         first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
-            first > 1 and not self.is_determiner(at - 1) and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
+            first > 1 and not self.is_determiner(at - 1) and form.form == "base"
+            and self.norms[first - 1] == "and" and "and" not in self.norms[first:at]
             and form.kind in ("posture", "lean") and self._predicate_follows(at)
             and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
         ):  # fmt: skip
@@ -582,7 +585,8 @@ class NounFinder:
         """Return True for the first part of a compound: *rolling pin*, *washing machine*."""
         if self._nouns.knows(f"{self.norms[at]} {after}"):
             return True
-        if not self._nounish(at + 1) or is_adjective(after) or after in DIRECTION_WORDS:
+        described = is_adjective(after) and not (is_material_noun(after) and not self._nounish(at + 2))
+        if not self._nounish(at + 1) or described or after in DIRECTION_WORDS:
             return False
         return (
             at == 0 or before in self._closed or not before[0].isalpha() or is_adjective(before) or before in ORDINALS

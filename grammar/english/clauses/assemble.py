@@ -638,7 +638,8 @@ class Assembly:
         acts = group.kind in ("other", "unknown") and verb.thing is None and group.lemma not in _PLACING
         clause = Clause(
             phrase, tuple(made), span, mood,
-            guesses=frozenset({Guess.ACTION} if acts and shape == "statement" else ()), positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
+            positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
+            guesses=frozenset({Guess.ACTION} if acts and shape == "statement" else ()),
             condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
         )  # fmt: skip
         self._append(clause, link)

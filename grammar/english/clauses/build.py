@@ -34,7 +34,7 @@ from deixis.grammar.english.tree import (
     Viewpoint,
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
-from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, last_word
+from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, SURFACES, last_word
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NEVER_PLACES, NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -272,7 +272,9 @@ class Builder(Transformer[Any, Built]):
             return Noun(_restricted(noun, mods))
         if is_place(noun) and not noun.predicates:
             return _place_with(noun, tuple(mods))
-        outer = tuple(p for p in mods if p.of_one) if noun.plural else ()
+        flat_below = last_word(noun.head) in SURFACES  # 'the cake on the windowsill with a cloth over it'
+        over = {p.relation for p in mods if p.of_one} <= {"above", "around"}
+        outer = tuple(p for p in mods if p.of_one) if noun.plural or (flat_below and over) else ()
         if outer:  # 'the plate above the forks with a knife across it'
             mods = tuple(p for p in mods if not p.of_one)
             return Noun(_restricted(noun, mods) if mods else noun, outer)
@@ -359,9 +361,10 @@ class Builder(Transformer[Any, Built]):
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
             return (turned, *noun.phrase.predicates, *extra)
-        person = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("me", "you", "we")
-        if person and noun.phrase.head in ("back", "rear") and relation in ("at", "on", "inside", "to"):
-            return (Predicate("behind", (noun.phrase.owner,), span, positive=relator.positive), *extra)
+        person = noun.phrase.owner
+        viewed = person is not None and person.pronoun in ("me", "you", "we") and noun.phrase.head in ("back", "rear")
+        if person is not None and viewed and relation in ("at", "on", "inside", "to"):  # 'the window at my back'
+            return (Predicate("behind", (person,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
@@ -412,10 +415,10 @@ class Builder(Transformer[Any, Built]):
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
         if noun.phrase.head.rpartition(" ")[2] in _ARRANGEMENTS and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            return extra
+            return (Predicate("there", (), span, positive=relator.positive), *extra)
         manner = relation == "by" and noun.phrase.head in _MANNERS
-        bare = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
-        if relation in ("by", "at") and bare and not noun.phrase.known and not noun.phrase.adjectives:
+        unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
+        if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:
             misunderstood(span, f"'{noun.phrase.head}' is not a place")  # 'by contrast', 'at dusk'
             return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
@@ -687,7 +690,10 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     phrase = noun.phrase
     last = phrase.predicates[-1] if phrase.predicates else None
     part = last.subject_part if last is not None else None
-    if last is None or part is None or part.owner is None or part.owner.pronoun not in ("it", "they"):
+    if last is None or part is None:
+        return noun, ()
+    own = part.owner is not None and part.owner.pronoun in ("it", "they")
+    if not own and not (part.owner is None and part.determiner == "the" and last.relation in ("facing", "pointing")):
         return noun, ()
     kept = phrase.predicates[:-1]
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
@@ -779,7 +785,28 @@ _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edg
 
 
 _LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
-_ARRANGEMENTS = frozenset({"setting", "arrangement", "layout", "style", "fashion", "manner", "order"})
+_ARRANGEMENTS = frozenset(
+    {
+        "triangle",
+        "semicircle",
+        "pattern",
+        "fan",
+        "pyramid",
+        "arc",
+        "spiral",
+        "diamond",
+        "grid",
+        "formation",
+        "heap",
+        "setting",
+        "arrangement",
+        "layout",
+        "style",
+        "fashion",
+        "manner",
+        "order",
+    }
+)
 _QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
 _FASTENING = word_set(
     "attach fix secure fasten screw bolt nail tape glue tie strap clip clamp pin connect join wedge press push wrap"

@@ -642,9 +642,9 @@ def _kind(
         while types[placed : placed + 2] == ["OF", "NP"]:
             placed += 2
         owner = source[end].value.owner
-        if owner is not None and owner.pronoun in ("it", "they") and types[placed : placed + 1] != []:
-            if types[placed] in PREDICATES and kinds == {"COMMA"}:
-                return "OJ"  # 'a lamp clamped to the edge, its arm bent over the towel'
+        own = owner is not None and owner.pronoun in ("it", "they") and kinds == {"COMMA"}
+        if own and not PREDICATES.isdisjoint(types[placed : placed + 1]):
+            return "OJ"  # 'a lamp clamped to the edge, its arm bent over the towel'
         introduced = source[end].value.determiner in ("a", "an", "some") or source[end].value.count is not None
         between = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found)
         if (

@@ -139,7 +139,7 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 ]
                 i += 1
                 continue
-            if following is not None and lemma in _RANGING and following.relation != "row":
+            if following is not None and lemma in _RANGING and following.relation not in ("row", "with", "inside"):
                 found.append(Predicate("row", (), predicate.span, positive=predicate.positive))
             if following is not None and lemma in _SHAPING and "into" in following.adverbs:
                 misunderstood(following.span, "this says what shape something gets, not where it is")
@@ -373,6 +373,8 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
             found.append((replace(predicate, arguments=(member,)), True))
         elif predicate.relation == "state" and not is_part and any(p.arguments for p in member.predicates):
             rest.append(predicate)  # 'with the strop folded on top of the case'
+        elif predicate.relation in ("pointing", "facing") and not is_part and member.plural:
+            rest.append(predicate)  # 'with the drilled holes facing up'
         elif predicate.relation in ("pointing", "facing", "open", "state", "parallel") and member.determiner != "a":
             found.append((predicate, False))
         else:

@@ -76,13 +76,14 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times,
-        _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
+        _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
+        _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart), _with_parts_after_verbs,
-        _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
-        _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
-        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
+        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
+        _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
+        _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
         _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -138,6 +139,16 @@ def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
         )  # fmt: skip
         found.append(emptied(chunk) if closed and (spoken_to or exclamation) else chunk)
     return found
+
+
+def _with_denied_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *never, I repeat never, set the lamp on it* with the command denied."""
+    first = chunks[0] if chunks else None
+    denies = first is not None and (first.type == "NOT" or first.value == "never") and type_at(chunks, 1) == "COMMA"
+    for i, chunk in enumerate(chunks if denies else ()):
+        if chunk.type in ("PUT", "DO"):
+            return [*chunks[:i], replace(chunk, value=replace(chunk.value, positive=False)), *chunks[i + 1 :]]
+    return chunks
 
 
 def _without_adverbs_apart(chunks: list[Chunk]) -> list[Chunk]:
@@ -339,6 +350,12 @@ def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
             and after == "NP" and chunks[i + 1].value.pronoun in PERSONS
             and any(c.type == "COMMA" for c in chunks[i + 1 :])
         )  # 'not in the box, where I had looked for it, but …'  # fmt: skip
+        where = chunk.type in ("SUB", "REL") and chunk.value in ("where", None) and after == "NP"
+        comma = next((k for k in range(i, len(chunks)) if chunks[k].type == "COMMA"), 0)
+        places = {c.type for c in chunks[: i - 1]} <= {"PREP", "NP", "OF", "ADVERB", "AND"}
+        where = where and places and chunks[0].type == "PREP" and type_at(chunks, i - 1) == "COMMA"
+        if where and type_at(chunks, comma + 1) in ("BE", "VERB"):  # 'behind it, where only staff may go, is a safe'
+            return _without_asides([*chunks[: i - 1], *chunks[comma + 1 :]])
         comment = chunk.type == "REL" and after in ("VERB", "TVERB") and chunks[i + 1].value.lemma in _COMMENTING
         if type_at(chunks, i - 1) == "COMMA" and comment:  # '…, which made everyone laugh'
             return _without_asides([*chunks[: i - 1], *chunks[end_before(chunks, i + 2, _BREAKS) :]])
@@ -582,7 +599,7 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
             i == 2 and ends and [c.type for c in chunks[:3]] == ["NP", "COLON", "NP"] and not chunk.value.plural
             and last_word(chunk.value.head) in VESSELS | HOLDERS and chunk.value.determiner in (None, "the")
             and last_word(chunks[0].value.head) not in VESSELS | HOLDERS | SURFACES and bool(chunks[0].value.head)
-            and not any(other.type in FINITE for other in chunks)
+            and not any(other.type in FINITE for other in chunks) and chunk.value.owner is None
         )  # fmt: skip
         noted = (
             chunk.type == "NP" and not found and ends and type_at(chunks, i + 1) == "COMMA" and not chunk.value.plural

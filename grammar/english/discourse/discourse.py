@@ -35,7 +35,7 @@ from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
-from deixis.grammar.english.vocabulary.nouns import GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.nouns import FRONTS, GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
@@ -273,6 +273,7 @@ class Discourse(Statements):
             handled = self._introduce(subject)  # 'fold the napkin'
             if handled is not None:
                 self.references.recent.insert(0, Focus(handled, [], None, sentence))
+                self.references.named = []
             return
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
@@ -504,13 +505,9 @@ def _can_be_verb(phrase: NounPhrase) -> bool:
     return bare and not phrase.known and phrase.head in verb_forms().keys() - PARTS
 
 
-_FRONTS = frozenset({"display", "dial", "lens", "logo", "opening", "writing", "picture", "window", "keyhole"})
-"""Nouns that, without an article, stand for the front of the thing before: *timer on the rack, display facing you*."""
-
-
 def _is_own_part(phrase: NounPhrase) -> bool:
     """Return True for a part of the thing before in a note: *shells, hollow side down*, *spoons, bowls downwards*."""
     bare = phrase.determiner is None and phrase.owner is None and bool(phrase.predicates)
     aimed = all(p.relation == "pointing" and p.value is not None and not p.arguments for p in phrase.predicates)
     directed = all(p.relation in ("pointing", "facing") for p in phrase.predicates)
-    return bare and directed and (aimed or last_word(phrase.head) in PARTS | _FRONTS)
+    return bare and directed and (aimed or last_word(phrase.head) in PARTS | FRONTS)

@@ -32,6 +32,8 @@ NAMED = re.compile(
     re.IGNORECASE,
 )
 """Noun phrase at the end of a clause."""
+MAX_SENTENCES_TO_GROUP = 4
+"""Number of sentences over which *the smallest* goes back to a group."""
 MIN_LOST = 12
 """Number of characters from which a phrase that was not understood can name a thing."""
 REGIONS = frozenset(
@@ -322,6 +324,8 @@ class References:
         for entity in sorted(
             latest_first,
             key=lambda entity: (
+                not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
+                and entity.born < self.sentence and entity.noun == phrase.head,
                 entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
             ),
@@ -472,7 +476,8 @@ class References:
                 group = entity.itself if entity.itself.members else entity.itself.group
                 if group is not None and group.noun:
                     return group
-        return next((e for e in reversed(self.entities) if e.members and e.noun), None)
+        late = (e for e in reversed(self.entities) if e.born >= self.sentence - MAX_SENTENCES_TO_GROUP)
+        return next((e for e in late if e.members and e.noun), None)
 
     # Pronouns ---------------------------------------------------------------------------------------------------
 
@@ -653,14 +658,11 @@ class References:
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
         last = self.recent[0] if self.recent else None
-        if (
-            last is not None
-            and self.holder in ("inside", "on")
-            and last.relation == self.holder
-            and relation != "under"
-        ):
-            if last.sentence == self.sentence and last.others and last.subject is not besides:
-                return last.others[0]  # 'cans go in the box, glass in the crate beside it'
+        parallel = last is not None and self.holder in ("inside", "on") and last.relation == self.holder
+        if last is not None and parallel and relation != "under":
+            held = last.others if last.sentence == self.sentence and last.subject is not besides else []
+            if held:
+                return held[0]  # 'cans go in the box, glass in the crate beside it'
         if (
             besides is not None and last is not None and relation in OPPOSITES.keys() - {"on", "under"} and last.others
             and OPPOSITES[relation] == last.relation and last.subject is not besides
@@ -714,9 +716,9 @@ class References:
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'
         first = None if last is None or last.sentence != self.sentence else last.subject
-        if relation == "between" and first is not None and first is not besides and first.role is Role.THING:
-            if first.plural or first.size > 1:
-                return first  # 'the curtains were drawn, yet a glove was caught between them'
+        several = first is not None and first is not besides and (first.plural or first.size > 1)
+        if first is not None and relation == "between" and several and first.role is Role.THING:
+            return first  # 'the curtains were drawn, yet a glove was caught between them'
         if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
             return two
         restrictions = [f.subject for f in self.recent[1:] if f.sentence == self.sentence and f.subject is not None]

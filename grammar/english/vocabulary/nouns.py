@@ -451,6 +451,24 @@ HOLDERS = frozenset(
 GAPS = frozenset({"gap", "space", "distance", "room"})
 """Nouns of what is between things, which is not a thing."""
 
+FRONTS = frozenset(
+    {
+        "display",
+        "dial",
+        "lens",
+        "logo",
+        "opening",
+        "writing",
+        "picture",
+        "window",
+        "keyhole",
+        "zipper",
+        "print",
+        "crest",
+    }
+)
+"""Nouns that, without an article, stand for the front of the thing before: *timer on the rack, display facing you*."""
+
 REMOVABLE = frozenset(
     {"door", "lid", "cap", "label", "stick", "drawer", "cable", "cord", "strap", "base", "screen", "hinge", "leg"}
 )

@@ -78,7 +78,8 @@ other: pick, pluck, trap, squash, reach, arrive, enjoy, own, own, wish, decide, 
 posture: ride rides rode ridden riding, rise rises risen risen rising, languish, lurk, bask, recline, jostle, flutter
 posture: drift, emerge, congregate, overhang overhangs overhung overhung overhanging, sprout, flop
 posture: grow grows grew grown growing, bloom, thrive, climb, creep creeps crept crept creeping, flourish, blossom
-posture: slant, topple, collapse, cling clings clung clung clinging, intrude, peek, abide, dwell dwells dwelt dwelt dwelling
+posture: slant, topple, collapse, cling clings clung clung clinging, intrude, peek, abide
+posture: dwell dwells dwelt dwelt dwelling
 posture: dock, hitch, tether, latch, snag, interleave, immerse, submerge, chuck, fling flings flung flung flinging
 posture: toss, pop, plump, plant, deposit, dab, smear, hammer, tap, bung, whack, thumbtack, staple, stitch, peg
 transitive: span, cradle, accommodate, sport, boast, crown, cap, skirt, fringe, ring
@@ -219,8 +220,8 @@ _ONLY_PARTICIPLES = word_set(
     "draw sink wind drive sling snap loop burn bundle dump paste plaster stencil deposit clip clamp ring tower string"
     " range coil slip lower fill stow plant heap spoon load"
     " thread pack feed scoop dot ladle stretch swing"
-    " pop plump dab smear hammer tap staple stitch peg latch dock hitch cap crown ring light cut split shut catch break bloom"
-    " tear pick strike melt fringe sport boast cradle skirt"
+    " pop plump dab smear hammer tap staple stitch peg latch dock hitch cap crown ring light cut split shut catch break"
+    " bloom tear pick strike melt fringe sport boast cradle skirt"
 )
 """Verbs whose plain forms are nouns or adjectives more often."""
 
