@@ -218,7 +218,7 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
-    """Find for whom or for what a thing is: *put out a bowl for you*, *put the glass for the guest right of the cup*."""
+    """Find for whom a thing is: *put out a bowl for you*, *put the glass for the guest right of the cup*."""
     if not (chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and at > 0):
         return None
     person = type_at(chunks, at + 1) == "NP" and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
@@ -798,8 +798,8 @@ def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
 def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
     """Return the chunks with a comma before what tells how and where else a thing is put, after its place.
 
-    *Lay the knife above the plate pointing left* is read as *lay the knife above the plate, pointing left*, and *put the
-    plate at the centre of the mat about 2 cm from its edge* as *…, about 2 cm from its edge*.
+    *Lay the knife above the plate pointing left* is read as *lay the knife above the plate, pointing left*, and *put
+    the plate at the centre of the mat about 2 cm from its edge* as *…, about 2 cm from its edge*.
     """
     found: list[Chunk] = []
     put = False

@@ -22,7 +22,8 @@ LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|pla
 NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|lay|sat|hung)\b", re.IGNORECASE)
 """Words by which a story says what is so in the end."""
 HABIT = re.compile(
-    r"(?<!\bis )(?<!\bare )(?<!\bbe )\b(?:always|usually|often|normally|generally)\s+(?:kept|stored|put|placed|had|left(?!\s+of\b)|stood|lay|hung|sat)\b"
+    r"(?<!\bis )(?<!\bare )(?<!\bbe )\b(?:always|usually|often|normally|generally)\s+"
+    r"(?:kept|stored|put|placed|had|left(?!\s+of\b)|stood|lay|hung|sat)\b"
     r"|\b(?:days?|weeks?|months?|years?|hours?)\s+ago\b",
     re.I,
 )

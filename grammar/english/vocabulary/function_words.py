@@ -227,7 +227,8 @@ ADVERBS = word_set(
     " neatly carefully gently loosely tightly firmly evenly all up down back out off along there here"
     " together apart away nearby itself else instead please kindly basically kinda sorta obviously however therefore"
     " further farther close facedown freely freestanding separately individually alone solely lengthwise sideways"
-    " crosswise squarely thus hence consequently accordingly dead bang smack slap ever least most more less super extremely overnight"
+    " crosswise squarely thus hence consequently accordingly"
+    " dead bang smack slap ever least most more less super extremely overnight"
     " later soon finally twice thrice"
 )
 
