@@ -37,6 +37,7 @@ class Entity:
     members: list[Entity] = field(default_factory=list)
     adjectives: set[tuple[str, str]] = field(default_factory=set)  # dimension and word
     mentions: list[str] = field(default_factory=list)
+    named: int = 0  # how often the text named it
     group: Entity | None = None
     same_as: Entity | None = None  # another entity that turned out to be this one
     whole: Entity | None = None
@@ -95,6 +96,7 @@ class Entity:
             Words of the text; an empty phrase and a repeated one are not recorded.
         """
         entity = self.itself
+        entity.named += 1
         if phrase and phrase not in entity.mentions:
             entity.mentions.append(phrase)
 

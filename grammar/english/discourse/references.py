@@ -328,6 +328,7 @@ class References:
                 and entity.born < self.sentence and entity.noun == phrase.head,
                 entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
+                -entity.named if entity.noun != phrase.head else 0,  # 'the plate': the one that is named most often
             ),
         ):  # fmt: skip
             if not _can_name(phrase.head, entity) or _conflicting(entity, phrase):
