@@ -51,7 +51,7 @@ class ActivityTextError(DeixisError, ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class ToldItem:
+class DescribedItem:
     """Things of a described activity: their kind, and how many; None for all that there are."""
 
     kind: str
@@ -61,7 +61,7 @@ class ToldItem:
         return self.kind if self.count == 1 else f"{self.kind} ({'all' if self.count is None else self.count})"
 
 
-def read_activity(text: str) -> list[list[ToldItem]]:
+def read_activity(text: str) -> list[list[DescribedItem]]:
     """Read a described activity.
 
     Parameters
@@ -71,7 +71,7 @@ def read_activity(text: str) -> list[list[ToldItem]]:
 
     Returns
     -------
-    list of list of ToldItem
+    list of list of DescribedItem
         Groups of things; nothing is said of the order within a group.
 
     Raises
@@ -81,7 +81,7 @@ def read_activity(text: str) -> list[list[ToldItem]]:
     """
     if not isinstance(text, str) or not text.strip():
         raise ActivityTextError("an activity must be a text, as in 'first the plate, then the forks'")
-    groups: list[list[ToldItem]] = []
+    groups: list[list[DescribedItem]] = []
     for clause in _BREAK.split(text):
         rest = _LEAD.sub("", clause.strip())
         if not rest:
@@ -97,7 +97,7 @@ def read_activity(text: str) -> list[list[ToldItem]]:
     return groups
 
 
-def _items(part: str, text: str) -> list[ToldItem]:
+def _items(part: str, text: str) -> list[DescribedItem]:
     items = []
     for phrase in re.split(r",|\band\b", _VERBS.sub(" ", part)):
         words = " ".join(phrase.split())
@@ -109,8 +109,8 @@ def _items(part: str, text: str) -> list[ToldItem]:
                 f"'{words}' in '{text.strip()[:60]}' is not a thing; write, say, 'first the plate, then the forks'"
             )
         noun, number = found["noun"].strip(), (found["det"] or "").split()[-1:]
-        said = _NUMBERS.get(number[0].lower(), int(number[0]) if number[0].isdigit() else None) if number else None
-        items.append(ToldItem(kind_of(singular(noun)), said or (None if is_plural(noun) else 1)))
+        count = _NUMBERS.get(number[0].lower(), int(number[0]) if number[0].isdigit() else None) if number else None
+        items.append(DescribedItem(kind_of(singular(noun)), count or (None if is_plural(noun) else 1)))
     if not items:
         raise ActivityTextError(f"'{text.strip()[:60]}' names no thing in '{part.strip()}'")
     return items

@@ -140,12 +140,12 @@ def write_together(commit: Commit, parts: Sequence[Part]) -> None:
             prepared.append(part)
         commit(write)
     except BaseException:
-        _each(prepared, "settle")
+        _call_each(prepared, "settle")
         raise
-    _each(prepared, "complete")
+    _call_each(prepared, "complete")
 
 
-def _each(parts: Sequence[Part], method: Literal["settle", "complete"]) -> None:
+def _call_each(parts: Sequence[Part], method: Literal["settle", "complete"]) -> None:
     """Call a method of each part, also where it raises for some; then raise the first error."""
     with contextlib.ExitStack() as calls:
         for part in reversed(parts):

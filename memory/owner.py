@@ -111,7 +111,7 @@ class OwnerLock:
         real = Path(os.path.realpath(folder))
         with _guard:
             if real in _held:
-                raise _held_here(folder)
+                raise _already_open(folder)
             lock = _held[real] = cls(real, *_locked(folder, real / LOCK_FILE))
         return lock
 
@@ -183,7 +183,7 @@ class ReaderLock:
         real = Path(os.path.realpath(folder))
         with _guard:
             if real in _held:
-                raise _held_here(folder)
+                raise _already_open(folder)
         try:
             descriptor = os.open(real / LOCK_FILE, os.O_RDONLY | os.O_CLOEXEC)
         except OSError:
@@ -268,7 +268,7 @@ def forked(folder: Path) -> MemoryBusyError:
     )
 
 
-def _held_here(folder: Path) -> MemoryBusyError:
+def _already_open(folder: Path) -> MemoryBusyError:
     return MemoryBusyError(f"the memory at {folder} is in use: this process has it open already; close it there first")
 
 

@@ -97,7 +97,7 @@ def import_episodes(board: Blackboard, text: str, file: str) -> int:
     origin, fluents = read_episodes(text, file)
     shift = (origin - board.origin).total_seconds()
     new = []
-    for each in (_moved(one, shift) for one in fluents):
+    for each in (_shifted(one, shift) for one in fluents):
         known = board.fluent(each.id)
         if known is None:
             new.append(each)
@@ -240,7 +240,7 @@ def _of_list(data: list[Any]) -> EpisodicFluent:
     )
 
 
-def _moved(fluent: EpisodicFluent, shift: float) -> EpisodicFluent:
+def _shifted(fluent: EpisodicFluent, shift: float) -> EpisodicFluent:
     if shift == 0:
         return fluent
     start, finish = (Bounds(each.lower + shift, each.upper + shift) for each in (fluent.start, fluent.finish))

@@ -502,7 +502,7 @@ def _findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Findi
     if found != counts.views >= 0:
         yield Finding("counts", f"{counts.views} views were written, but {found} are there")
     yield from _teachings(now)
-    yield from _strays(now)
+    yield from _orphaned_arrays(now)
 
 
 def _teachings(now: Snapshot) -> Iterator[Finding]:
@@ -538,7 +538,7 @@ def _view(now: Snapshot, key: bytes, sealed: bytes) -> Iterator[Finding]:
         yield Finding(where, _line(error).removeprefix(f"{where}: "))
 
 
-def _strays(now: Snapshot) -> Iterator[Finding]:
+def _orphaned_arrays(now: Snapshot) -> Iterator[Finding]:
     """Find arrays that belong to no view."""
     try:
         for key in now.bare_keys(keys.ARRAYS):

@@ -65,18 +65,18 @@ class Dump:
             A quad.
         """
         for name, triples in self.canonical.items():
-            yield from _in(graph_iri(name), triples)
+            yield from _quads_in(graph_iri(name), triples)
         for lesson, graphs in self.lessons.items():
             for name, triples in graphs.items():
-                yield from _in(lesson_graph(lesson, name), triples)
-                yield from _in(graph_iri(name), triples)
+                yield from _quads_in(lesson_graph(lesson, name), triples)
+                yield from _quads_in(graph_iri(name), triples)
         for which, triples in self.models.items():
-            yield from _in(models_graph(which), triples)
-            yield from _in(graph_iri(GraphName.LEARNED), triples)
+            yield from _quads_in(models_graph(which), triples)
+            yield from _quads_in(graph_iri(GraphName.LEARNED), triples)
         for kept, graph_of in ((self.package, package_graph), (self.loaded, loaded_graph)):
             for name, triples in kept.items():
-                yield from _in(graph_of(name), triples)
-                yield from _in(graph_iri(name), triples)
+                yield from _quads_in(graph_of(name), triples)
+                yield from _quads_in(graph_iri(name), triples)
 
     def in_order(self) -> list[str]:
         """Return the lessons in the order of their stated starting times, then by id.
@@ -182,6 +182,6 @@ def _place(dump: Dump, file: Path, graph: str) -> set[ox.Triple]:
     return kept[name]
 
 
-def _in(graph: ox.NamedNode, triples: set[ox.Triple]) -> Iterator[ox.Quad]:
+def _quads_in(graph: ox.NamedNode, triples: set[ox.Triple]) -> Iterator[ox.Quad]:
     for triple in triples:
         yield ox.Quad(triple.subject, triple.predicate, triple.object, graph)

@@ -185,7 +185,7 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
         for name, triples in contributions.items():
             added[name].update(triples)
     operations += ledger.numbering(store, new_lessons)
-    for name, graph, loose in _loose(store, dump):
+    for name, graph, loose in _without_lesson(store, dump):
         operations += ledger.insertion(graph, sorted(loose, key=str))
         added[name].update(loose)
     new_ones = {
@@ -197,7 +197,7 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
     return together(lessons, modelling(store, new))
 
 
-def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNode, set[ox.Triple]]]:
+def _without_lesson(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNode, set[ox.Triple]]]:
     """Yield the triples that belong to no lesson, by graph; those that a lesson has too are marked as loaded."""
     for name in CONTRIBUTED:
         loose = dump.loose(name)

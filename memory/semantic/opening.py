@@ -176,7 +176,7 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
     remove_stale()
     state = files.inspect(folder)
     if state in (FolderState.ABSENT, FolderState.EMPTY) and not create:
-        raise MemoryFormatError(f"{_nothing(folder, state)}; learn something into it first, or name another folder")
+        raise MemoryFormatError(f"{_why_none(folder, state)}; learn something into it first, or name another folder")
     made = state is FolderState.ABSENT
     if made:
         try:
@@ -221,7 +221,7 @@ def _open_for_reading(folder: Path, reason: str) -> Opened:
         raise
 
 
-def _nothing(folder: Path, state: FolderState) -> str:
+def _why_none(folder: Path, state: FolderState) -> str:
     """Return the part of a message that says why there is no memory in a folder."""
     from deixis.memory.perceptual.in_folder import has_views
 

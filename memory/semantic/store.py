@@ -278,7 +278,7 @@ class SemanticMemory(Closing):
                 self._queries.close()
             try:
                 if self._forgets and not opened.inherited:
-                    _give_back(opened, self._forgets)
+                    _compact(opened, self._forgets)
             finally:
                 opened.close()
 
@@ -807,7 +807,7 @@ class _Copy(SemanticMemory):
         self.store.optimize()
 
 
-def _give_back(opened: Opened, forgotten: int) -> None:
+def _compact(opened: Opened, forgotten: int) -> None:
     """Rewrite a store that has no more lessons than were forgotten since the last rewrite; ignore a failure.
 
     So each forgotten lesson pays for copying one lesson, however many there are.

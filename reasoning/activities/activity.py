@@ -23,7 +23,7 @@ from deixis.reasoning.temporal.fluent import Fluent, Statement
 
 RELATIONS = 13
 
-TOLD_PRESENT, TOLD_HOLDS = 0.95, 0.97
+STEP_PRESENT, RELATION_HOLDS = 0.95, 0.97
 """Probabilities that a described step is carried out, and that a described relation between two steps holds."""
 
 PRIOR = 1.0
@@ -342,7 +342,7 @@ class Activity:
     def presence(self) -> NDArray[np.float64]:
         """Probability that each step is carried out, shape (n,)."""
         if not self.examples:
-            return np.full(len(self.steps), TOLD_PRESENT)
+            return np.full(len(self.steps), STEP_PRESENT)
         return (self.present + 0.5) / (self.examples + 1.0)
 
     def relations(self, chance: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -364,7 +364,7 @@ class Activity:
         outside = (1 - stated) * chance
         rest = outside.sum(axis=2, keepdims=True)
         outside = np.divide(outside, rest, out=np.zeros_like(outside), where=rest > 0)
-        holds = np.where(rest > 0, TOLD_HOLDS, 1.0)
+        holds = np.where(rest > 0, RELATION_HOLDS, 1.0)
         prior = holds * inside + (1 - holds) * outside
         total = self.counts.sum(axis=2, keepdims=True)
         found: NDArray[np.float64] = (self.counts + PRIOR * prior) / (total + PRIOR)

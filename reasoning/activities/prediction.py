@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer
-from deixis.reasoning.activities.activity import STARTS_FIRST, TOLD_HOLDS, Activity, LaidThing, Laying
+from deixis.reasoning.activities.activity import RELATION_HOLDS, STARTS_FIRST, Activity, LaidThing, Laying
 from deixis.reasoning.errors import SettingError
 
 STRICT = 0.1
@@ -214,7 +214,7 @@ class LayingModel:
                 for b, other in enumerate(said):
                     if told.stated[a, b] == STARTS_FIRST:
                         i, j = self._at[one], self._at[other]
-                        prior[i, j], prior[j, i] = TOLD_HOLDS, (1 - TOLD_HOLDS) / 2
+                        prior[i, j], prior[j, i] = RELATION_HOLDS, (1 - RELATION_HOLDS) / 2
         yes, no = self._before, self._before.T
         first = np.log(prior) + yes * math.log(1 - SLIP) + no * math.log(SLIP)
         free = np.log(1 - prior - prior.T) + (yes + no) * math.log(0.5)
@@ -234,7 +234,7 @@ class LayingModel:
         """
         examples = len(self._examples)
         seen = self._present[left]
-        usual = np.where(seen > 0, (seen + 0.5) / (examples + 1.0), TOLD_HOLDS)
+        usual = np.where(seen > 0, (seen + 0.5) / (examples + 1.0), RELATION_HOLDS)
         odds = usual / (1 - usual)
         late = self._first[np.ix_(left, np.array(there, dtype=np.int64))]
         odds = odds * np.prod(late * SLIP + (1 - late), axis=1)

@@ -286,7 +286,7 @@ class _Measures:
         shown = f"on {self.things[worst]}, it is {x:.0%} of the way from left to right and {y:.0%} from near to far"
         gap = float(self.degrees.gaps[subject, worst])
         if gap > 0:
-            shown = f"it is {self._length(gap)} beside {self.things[worst]}"
+            shown = f"it is {self._length(gap)} away from {self.things[worst]}"
         return float(table[subject, worst]), shown
 
     def _between(self, term: str, subject: int, others: list[int]) -> Measured:
@@ -305,7 +305,9 @@ class _Measures:
         along = float(off @ way) / length**2
         across = abs(float(off[0] * way[1] - off[1] * way[0])) / length
         first, second = self.things[a], self.things[b]
-        shown = f"it is {along:.0%} of the way from {first} to {second}, {self._length(across)} beside their line"
+        shown = (
+            f"it is {along:.0%} of the way from {first} to {second}, {self._length(across)} off the line between them"
+        )
         return float(table[subject, a, b]), shown
 
     def _nearest(self, term: str, subject: int, others: list[int]) -> Measured:
@@ -401,7 +403,7 @@ class _Measures:
         length = max(float(np.ptp(middle @ axes[0])), 1e-9)
         off = float(np.abs(middle @ axes[1]).max())
         degree = float(np.exp(np.interp(off / length, *OFF_LINE)))
-        return degree, f"they are up to {self._length(off)} beside a line of {self._length(length)}"
+        return degree, f"they are up to {self._length(off)} off a line of {self._length(length)}"
 
     def _circle(self, members: list[int]) -> Measured:
         if len(members) < 3:

@@ -37,7 +37,7 @@ class BeyondLessonsError(ReasonerError):
 
 
 @dataclass(frozen=True)
-class ToldClass:
+class ClassAxioms:
     """The axioms of a class: its named super-classes, and its restrictions as pairs of a property and a class."""
 
     broader: frozenset[str] = frozenset()
@@ -58,19 +58,19 @@ class Subsumption:
 
     ``ends`` is such a function for properties; ``disjoint`` are groups of pairwise disjoint classes.
 
-    >>> said = {"fork": ToldClass(frozenset({"cutlery"})), "cutlery": ToldClass(frozenset({"thing"}))}
-    >>> sorted(Subsumption(lambda name: said.get(name, ToldClass())).broader("fork"))
+    >>> axioms = {"fork": ClassAxioms(frozenset({"cutlery"})), "cutlery": ClassAxioms(frozenset({"thing"}))}
+    >>> sorted(Subsumption(lambda name: axioms.get(name, ClassAxioms())).broader("fork"))
     ['cutlery', 'thing']
     """
 
     def __init__(
         self,
-        class_axioms: Callable[[str], ToldClass],
+        class_axioms: Callable[[str], ClassAxioms],
         ends: Callable[[str], PropertyEnds] = lambda prop: PropertyEnds(),
         disjoint: Sequence[frozenset[str]] = (),
     ) -> None:
         self._class_axioms, self._ends, self._disjoint = class_axioms, cache(ends), disjoint
-        self._classes: dict[str, ToldClass] = {}
+        self._classes: dict[str, ClassAxioms] = {}
         self._broader: dict[str, frozenset[str]] = {}
 
     def broader(self, name: str) -> frozenset[str]:
@@ -135,7 +135,7 @@ class Subsumption:
             todo += new
         return above
 
-    def _class(self, name: str) -> ToldClass:
+    def _class(self, name: str) -> ClassAxioms:
         known = self._classes.get(name)
         if known is None:
             known = self._classes[name] = self._class_axioms(name)

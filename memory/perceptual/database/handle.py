@@ -153,7 +153,7 @@ class WriteBatch:
         self.views -= 1
 
 
-def _marked(change: WriteBatch, id: str) -> WriteBatch:
+def _with_journal_id(change: WriteBatch, id: str) -> WriteBatch:
     """Return a change that also stores the id of its journal."""
     pairs = [*change.pairs, (keys.JOURNAL, seal(keys.JOURNAL, id.encode()))]
     return WriteBatch(pairs, change.places, change.views)
@@ -397,7 +397,7 @@ class Handle:
             If the change cannot be written now.
         """
         try:
-            self.write(_marked(change, id), sync=True)
+            self.write(_with_journal_id(change, id), sync=True)
         except MemoryWriteError as error:
             raise MemoryWriteError(
                 f"{error}; the lessons are stored, and their views will be when the memory is next opened and can be "
@@ -421,7 +421,7 @@ class Handle:
             if entry.undo and not applied:
                 self.write(self._undoing(entry.undo), sync=True)
             elif entry.pairs and not applied and has_committed(self.folder.parent, PERCEPTUAL, entry.id):
-                self.write(_marked(WriteBatch(list(entry.pairs), {}, entry.views), entry.id), sync=True)
+                self.write(_with_journal_id(WriteBatch(list(entry.pairs), {}, entry.views), entry.id), sync=True)
                 self._places = None  # the batch may have moved views
         clear_journal(where)
 
@@ -540,7 +540,7 @@ class Handle:
         self._scratch, self._read_only = scratch, reason
 
 
-def _disown() -> None:
+def _drop_in_child() -> None:
     """Remove the databases from a forked child, which must not touch those of its parent, without freeing them."""
     global _opening
     _opening = threading.Lock()
@@ -549,7 +549,7 @@ def _disown() -> None:
     _handles.clear()
 
 
-os.register_at_fork(after_in_child=_disown)
+os.register_at_fork(after_in_child=_drop_in_child)
 
 
 def closed() -> MemoryFormatError:

@@ -139,12 +139,12 @@ class QueryProcess:
                 raise time_error(limits)
             part = os.read(out, min(length, 2**20))
             if not part:
-                raise self._death(limits)
+                raise self._exit_error(limits)
             parts.append(part)
             length -= len(part)
         return b"".join(parts)
 
-    def _death(self, limits: QueryLimits) -> QueryError:
+    def _exit_error(self, limits: QueryLimits) -> QueryError:
         """Return the error for a process that ended by itself, with the reason."""
         code = self._process.wait()
         if code == -signal.SIGALRM:

@@ -208,7 +208,7 @@ def compile_problem(problem: Problem) -> Compiled:
     """
     k, n2, _ = problem.tables.shape
     m, n1 = len(problem.ends), len(problem.absent)
-    tables = _room_of(problem.tables)
+    tables = _allocation_of(problem.tables)
     if tables is None:
         tables = np.zeros((2 * k, n2 + 1, n2 + 1), dtype=np.float32)
         tables[:k, :n2, :n2] = problem.tables
@@ -231,7 +231,7 @@ def compile_problem(problem: Problem) -> Compiled:
     )
 
 
-def _room_of(tables: NDArray[np.float32]) -> NDArray[np.float32] | None:
+def _allocation_of(tables: NDArray[np.float32]) -> NDArray[np.float32] | None:
     """Return the array that :func:`empty_tables` allocated for tables (k, n2, n2); None for other tables."""
     room, (k, n2, _) = tables.base, tables.shape
     if not isinstance(room, np.ndarray) or room.shape != (2 * k, n2 + 1, n2 + 1) or room.dtype != np.float32:

@@ -29,7 +29,9 @@ SceneFile = Annotated[
     str, typer.Argument(metavar="SCENE", help="A scene (.scene.json), or COCO or LabelMe annotations.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-ENGINE_HELP = "exact; scalable; similarity: the paper's; blondel and heymans-singh: from the literature."
+ENGINE_HELP = (
+    "exact: proves the best match; scalable: for large scenes; similarity: the paper's; others: from the literature."
+)
 TimeLimit = Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer within this time.")]
 MemoryLimit = Annotated[
     float, typer.Option(min=0.01, metavar="GB", help="Refuse a problem that needs more memory, in gigabytes.")
@@ -38,7 +40,7 @@ HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Ignore the labe
 Image = Annotated[str | None, typer.Option(metavar="NAME", help="Which image of a COCO file.")]
 MemoryDir = Annotated[
     Path | None,
-    typer.Option("--memory", metavar="DIR", help="The memory (default: $DEIXIS_MEMORY, else in your home folder)."),
+    typer.Option("--memory", metavar="DIR", help="Folder of the memory (default: $DEIXIS_MEMORY, else in your home)."),
 ]
 NoMemory = Annotated[bool, typer.Option("--no-memory", help="Do not use the memory.")]
 Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw it (.png, .svg, .pdf).")]

@@ -332,7 +332,7 @@ def assert_checks(
         if names != set(wanted[fault])
     ]
     if not wrong and not any(wanted.values()) and not checked.table.well:
-        wrong = ["nothing must be wrong, and facts are violated"]
+        wrong = ["no fault is expected, but facts are violated"]
     if wrong:
         raise AssertionError("\n".join([*wrong, *check_lines(checked)]))
     return checked

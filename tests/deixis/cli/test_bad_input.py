@@ -85,7 +85,7 @@ def test_no_such_scene_and_a_folder(tmp_path: Path) -> None:
 
 
 def test_the_same_file_as_script_and_scene() -> None:
-    assert refused("ground", SCRIPT1, SCRIPT1).startswith(f"deixis: {SCRIPT1}:1:1: this is not valid JSON")
+    assert refused("ground", SCRIPT1, SCRIPT1).startswith(f"deixis: {SCRIPT1}: this is a layout script, not a scene")
     assert "this is JSON, not a layout script" in refused("ground", SCENE, SCENE)
 
 

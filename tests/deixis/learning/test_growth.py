@@ -267,7 +267,7 @@ def test_of_a_batch_all_lessons_are_kept_or_none(tmp_path: Path) -> None:
     good = (read_script(text=SCRIPT.format(name="tea")), table(0.0))
     nothing = (read_script(text="layout x; a left of b"), read_scene({"objects": []}))
     with Session(tmp_path / "memory") as session:
-        with pytest.raises(LookupError, match="nothing that the script"):
+        with pytest.raises(LookupError, match="no object of the script"):
             session.learn_all([good, nothing])
         assert session.memory(create=True).lessons() == ()
         assert session.learn_all([]) == ()

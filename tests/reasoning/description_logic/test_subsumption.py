@@ -17,9 +17,9 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.description_logic.subsumption import (
     NOTHING,
     BeyondLessonsError,
+    ClassAxioms,
     PropertyEnds,
     Subsumption,
-    ToldClass,
 )
 from deixis.reasoning.errors import InconsistencyError
 
@@ -27,17 +27,17 @@ ONTOLOGY = default_ontology()
 OWL = "http://www.w3.org/2002/07/owl#"
 
 
-def told(**classes: str | tuple[str, str]) -> dict[str, ToldClass]:
+def told(**classes: str | tuple[str, str]) -> dict[str, ClassAxioms]:
     return {
-        name: ToldClass(frozenset([said]) if isinstance(said, str) else frozenset(),
+        name: ClassAxioms(frozenset([said]) if isinstance(said, str) else frozenset(),
                         frozenset() if isinstance(said, str) else frozenset([said]))
         for name, said in classes.items()
     }  # fmt: skip
 
 
-def subsumption(said: dict[str, ToldClass], **ends: PropertyEnds) -> Subsumption:
+def subsumption(said: dict[str, ClassAxioms], **ends: PropertyEnds) -> Subsumption:
     disjoint = [frozenset({"fork", "knife"})]
-    return Subsumption(lambda name: said.get(name, ToldClass()), lambda p: ends.get(p, PropertyEnds()), disjoint)
+    return Subsumption(lambda name: said.get(name, ClassAxioms()), lambda p: ends.get(p, PropertyEnds()), disjoint)
 
 
 def test_super_classes_are_followed_through_cycles_and_domains() -> None:
@@ -49,18 +49,18 @@ def test_super_classes_are_followed_through_cycles_and_domains() -> None:
 @pytest.mark.parametrize(
     ("said", "possible"),
     [
-        ({"x": ToldClass(frozenset({"fork", "knife"}))}, False),
-        ({"x": ToldClass(frozenset({"fork", "cutlery"}))}, True),
-        ({"x": ToldClass(frozenset({NOTHING}))}, False),
+        ({"x": ClassAxioms(frozenset({"fork", "knife"}))}, False),
+        ({"x": ClassAxioms(frozenset({"fork", "cutlery"}))}, True),
+        ({"x": ClassAxioms(frozenset({NOTHING}))}, False),
         (
-            {"x": ToldClass(shows=frozenset({("shows", "both")})), "both": ToldClass(frozenset({"fork", "knife"}))},
+            {"x": ClassAxioms(shows=frozenset({("shows", "both")})), "both": ClassAxioms(frozenset({"fork", "knife"}))},
             False,
         ),
-        ({"x": ToldClass(shows=frozenset({("holds", "knife")}))}, False),
-        ({"x": ToldClass(shows=frozenset({("shows", "knife")}))}, True),
+        ({"x": ClassAxioms(shows=frozenset({("holds", "knife")}))}, False),
+        ({"x": ClassAxioms(shows=frozenset({("shows", "knife")}))}, True),
     ],
 )
-def test_disjoint_super_classes_or_shown_classes_are_impossible(said: dict[str, ToldClass], possible: bool) -> None:
+def test_disjoint_super_classes_or_shown_classes_are_impossible(said: dict[str, ClassAxioms], possible: bool) -> None:
     found = subsumption(said, holds=PropertyEnds(ranges=frozenset({"fork"})))
     assert found.satisfiable("x") is possible
 

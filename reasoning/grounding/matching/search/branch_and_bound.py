@@ -375,7 +375,7 @@ def _look_at(d, problem, stack, record, column_of):  # type: ignore[no-untyped-d
             return CLOSED
     i = -1
     for j in range(len(node.counts)):
-        if node.counts[j] > 1 and (i < 0 or _before(j, i, node, problem)):
+        if node.counts[j] > 1 and (i < 0 or _branches_first(j, i, node, problem)):
             i = j
     if i < 0:
         return LEAF if all_maps else CLOSED
@@ -385,7 +385,7 @@ def _look_at(d, problem, stack, record, column_of):  # type: ignore[no-untyped-d
 
 
 @njit(cache=True)
-def _before(j, i, node, problem):  # type: ignore[no-untyped-def]
+def _branches_first(j, i, node, problem):  # type: ignore[no-untyped-def]
     """Return whether to branch on j rather than on i: fewer candidates, then more facts."""
     if node.counts[j] != node.counts[i]:
         return node.counts[j] < node.counts[i]
@@ -480,12 +480,12 @@ def _descend(d, stack, record):  # type: ignore[no-untyped-def]
     child.unary[:], child.messages[:], child.candidates[:] = parent.unary, parent.messages, parent.candidates
     child.counts[:], child.price[:], child.profit[:] = parent.counts, parent.price, parent.profit
     stack.bound[d + 1], stack.branch[d + 1] = bound, -1
-    if _give(i, p, child):
+    if _fix(i, p, child):
         stack.depth[0] = d + 1
 
 
 @njit(cache=True)
-def _give(i, p, node):  # type: ignore[no-untyped-def]
+def _fix(i, p, node):  # type: ignore[no-untyped-def]
     """Restrict object i to thing p, and exclude p for other objects; return false where one has no candidate left."""
     node.candidates[i, 0], node.counts[i] = p, 1
     kept = node.unary[i, p]

@@ -96,9 +96,9 @@ def exchange(i, p, state, problem):  # type: ignore[no-untyped-def]
     """
     old, j = state.labels[i], state.holder[p]
     out = len(state.holder) - 1
-    _give(i, p, state, problem)
+    _reassign(i, p, state, problem)
     if j >= 0:
-        _give(j, old, state, problem)
+        _reassign(j, old, state, problem)
     if p < out:
         state.holder[p] = i
     if old < out:
@@ -106,7 +106,7 @@ def exchange(i, p, state, problem):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _give(i, p, state, problem):  # type: ignore[no-untyped-def]
+def _reassign(i, p, state, problem):  # type: ignore[no-untyped-def]
     old = state.labels[i]
     for slot in range(problem.first[i], problem.first[i + 1]):
         j, kind = problem.other[slot], problem.kind[slot]

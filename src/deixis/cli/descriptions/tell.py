@@ -14,7 +14,7 @@ def tell(
         str, typer.Argument(metavar="LAYOUT|SCENE", help="A layout (.layout), a text (.txt), or a scene (.scene.json).")
     ],
     all_facts: Annotated[
-        bool, typer.Option("--all", help="Say every fact, also what follows from the others.")
+        bool, typer.Option("--all", help="State every fact, even one that follows from the others.")
     ] = False,
     hide_labels: HideLabels = False,
     image: Image = None,

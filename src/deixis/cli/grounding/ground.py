@@ -42,11 +42,12 @@ def ground(
     scene: SceneFile,
     engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
     select: Annotated[
-        Select, typer.Option(help="With similarity: choose the sub-graph by the facts, or as in the paper.")
+        Select,
+        typer.Option(help="With --engine similarity: choose the sub-graph by its satisfied facts, or by similarity."),
     ] = Select.FACTS,
     literal: Annotated[bool, typer.Option("--literal", help="Take words literally, not by degrees.")] = False,
     no_sizes: Annotated[bool, typer.Option("--no-sizes", help="Ignore the usual sizes of things.")] = False,
-    ask: Annotated[bool, typer.Option("--ask", help="Ask questions that decide open names.")] = False,
+    ask: Annotated[bool, typer.Option("--ask", help="Ask questions to decide the undecided names.")] = False,
     oracle: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Take the answers from a JSON file of names and ids; null: absent."),

@@ -43,8 +43,8 @@ def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 
 @category_app.command("rename")
 def rename(
-    old: Annotated[str, typer.Argument(metavar="OLD", autocompletion=complete_categories)],
-    new: Annotated[str, typer.Argument(metavar="NEW")],
+    old: Annotated[str, typer.Argument(metavar="OLD", help="The present name.", autocompletion=complete_categories)],
+    new: Annotated[str, typer.Argument(metavar="NEW", help="The new name.")],
     memory: MemoryDir = None,
 ) -> None:
     """Give a category another name; its views stay."""
@@ -60,8 +60,13 @@ def rename(
 
 @category_app.command("merge")
 def merge(
-    source: Annotated[str, typer.Argument(metavar="SOURCE", autocompletion=complete_categories)],
-    into: Annotated[str, typer.Argument(metavar="INTO", autocompletion=complete_categories)],
+    source: Annotated[
+        str, typer.Argument(metavar="SOURCE", help="The category to remove.", autocompletion=complete_categories)
+    ],
+    into: Annotated[
+        str,
+        typer.Argument(metavar="INTO", help="The category that gets its views.", autocompletion=complete_categories),
+    ],
     memory: MemoryDir = None,
 ) -> None:
     """Move the views of one category to another, for two words with one meaning."""
@@ -76,7 +81,9 @@ def merge(
 
 @category_app.command("forget")
 def forget_category(
-    name: Annotated[str, typer.Argument(metavar="CATEGORY", autocompletion=complete_categories)],
+    name: Annotated[
+        str, typer.Argument(metavar="CATEGORY", help="The category to forget.", autocompletion=complete_categories)
+    ],
     memory: MemoryDir = None,
 ) -> None:
     """Forget a category with all its views."""

@@ -35,7 +35,7 @@ def show(
 ) -> None:
     """Print a learned layout, with what its tables have in common and counts.
 
-    A name stands for all tables of the layout: told facts that did not hold on all of them are hedged by their share,
+    A name stands for all tables of the layout: stated facts that did not hold on all of them are hedged by their share,
     and what held on all of them is added. The id of a lesson stands for that lesson.
     """
     from deixis.report.knowledge.concept import concept_to_dict

@@ -27,7 +27,7 @@ def unlearn(
     day: Annotated[
         str | None, typer.Option(metavar="DATE", help="What was taught on a day: 2026-11-23, today or yesterday.")
     ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Print what would go; change nothing.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Print what would be removed; change nothing.")] = False,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:

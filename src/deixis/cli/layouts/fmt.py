@@ -14,7 +14,9 @@ from deixis.cli.common import NO, AsJson, Script, print_json
 
 def fmt(
     script: Script,
-    write: Annotated[bool, typer.Option("--write", "-w", help="Change the file instead of printing.")] = False,
+    write: Annotated[
+        bool, typer.Option("--write", "-w", help="Write the result to the file instead of printing it.")
+    ] = False,
     check: Annotated[bool, typer.Option("--check", help="Print nothing; exit 1 if the file would change.")] = False,
     as_json: AsJson = False,
 ) -> None:

@@ -90,7 +90,7 @@ def recognise(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Say which of the known activities happened; exit 1 if none of them did."""
+    """Find which of the known activities happened; exit 1 if none of them did."""
     from deixis.report.reasoning.activities import recognised_lines, recognised_to_dict
     from deixis.workflows.reasoning.activities import recognise as run
 
@@ -109,7 +109,7 @@ def predict(
     known: Annotated[Path | None, typer.Option("--known", metavar="FILE", help="File of learned activities.")] = None,
     name: Annotated[str | None, typer.Option(metavar="NAME", help="Learned activity, where there are several.")] = None,
     told: Annotated[
-        str | None, typer.Option(metavar="TEXT", help="Order that was said: 'first the plate, then the forks'.")
+        str | None, typer.Option(metavar="TEXT", help="Stated order: 'first the plate, then the forks'.")
     ] = None,
     experience: Experience = None,
     memory: MemoryDir = None,

@@ -69,7 +69,7 @@ def solve(
     solved = []
     with progress_bar("closing") as progress:
         for text in texts:
-            solved.append(solve_text(text, request, progress, _quiet if aside else _print_verdict))
+            solved.append(solve_text(text, request, progress, _print_nothing if aside else _print_verdict))
             if not aside:
                 print_lines(reason_lines(solved[-1], not verdict))
     _report(network, solved, out, as_json, aside)
@@ -83,7 +83,7 @@ def _print_verdict(solved: SolvedNetwork) -> None:
     sys.stdout.flush()
 
 
-def _quiet(solved: SolvedNetwork) -> None:
+def _print_nothing(solved: SolvedNetwork) -> None:
     pass
 
 

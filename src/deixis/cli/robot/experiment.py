@@ -11,7 +11,7 @@ from deixis.cli.common import AsJson, print_json, print_lines, print_written, re
 from deixis.cli.progress import step_bar
 
 experiment = typer.Typer(
-    help="Run an experiment from the paper, or one of ours.", no_args_is_help=True, rich_markup_mode=None
+    help="Run an experiment of the paper or of this project.", no_args_is_help=True, rich_markup_mode=None
 )
 
 Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the random numbers.")]

@@ -50,9 +50,11 @@ def run(
     ] = None,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the simulated story.")] = 0,
     camera: Annotated[
-        str, typer.Option(metavar="still|sway|walk", help="How the camera of the person moves who lays the table.")
+        str, typer.Option(metavar="still|sway|walk", help="With --from laying: movement of the person's camera.")
     ] = "sway",
-    rate: Annotated[float, typer.Option(metavar="HZ", min=0.5, max=30, help="Frames a second of the simulator.")] = 4.0,
+    rate: Annotated[
+        float, typer.Option(metavar="HZ", min=0.5, max=30, help="Frames per second of the simulator.")
+    ] = 4.0,
     intrinsics: Annotated[Path | None, typer.Option(metavar="FILE", help="Camera of depth images (.json).")] = None,
     grows: Annotated[bool, typer.Option("--grows", help="Wait for further clouds in the folder.")] = False,
     words: Annotated[

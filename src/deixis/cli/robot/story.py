@@ -173,14 +173,14 @@ def _running(tour: Tour, out: Path) -> None:
     ):
         robot.wait()
         write_story(robot, out / "live")
-    tour.listing(sorted(lines, key=_began))  # a sentence is printed at its end, with the time of its beginning
+    tour.listing(sorted(lines, key=_start_of))  # a sentence is printed at its end, with the time of its beginning
     tour.picture(
         f"live/{OVERVIEW}",
         "A teacher points at a thing, describes the layout, and asks what is wrong",
     )
 
 
-def _began(line: str) -> float:
+def _start_of(line: str) -> float:
     """Return the seconds with which a line of the conversation begins; infinity for a line without a time."""
     seconds = re.match(r" *(\d+\.\d) s  ", line)
     return float(seconds[1]) if seconds else math.inf

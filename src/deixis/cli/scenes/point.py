@@ -16,7 +16,7 @@ def point(
     said: Annotated[
         Path | None, typer.Option("--said", metavar="FILE", help="What was said, a line of JSON each (.said.jsonl).")
     ] = None,
-    sure: Annotated[float, typer.Option(metavar="P", help="Probability from which a thing is decided.")] = 0.95,
+    sure: Annotated[float, typer.Option(metavar="P", help="Minimum probability of a decided thing.")] = 0.95,
     memory: Annotated[
         Path | None,
         typer.Option("--memory", metavar="DIR", help="Keep what was said and shown in this memory."),

@@ -24,15 +24,21 @@ def track(
     source: Annotated[
         list[str], typer.Argument(metavar="SOURCE...", help="A folder of clouds, cloud files, or 'simulator'.")
     ],
-    rate: Annotated[float, typer.Option(metavar="HZ", help="Frames a second, where the source has no times.")] = 10.0,
+    rate: Annotated[float, typer.Option(metavar="HZ", help="Frames per second, if the source has no times.")] = 10.0,
     grows: Annotated[bool, typer.Option("--grows", help="Wait for further files in the folder.")] = False,
-    patience: Annotated[float, typer.Option(metavar="SECONDS", help="End of waiting without a new file.")] = 10.0,
+    patience: Annotated[
+        float, typer.Option(metavar="SECONDS", help="Stop waiting after this time without a new file.")
+    ] = 10.0,
     intrinsics: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json) of depth images.")
     ] = None,
     live: Annotated[bool, typer.Option("--live", help="Drop frames that come too fast.")] = False,
-    things: Annotated[int, typer.Option(metavar="N", min=1, max=12, help="Simulator: things at the start.")] = 4,
-    actions: Annotated[int, typer.Option(metavar="N", min=0, max=100, help="Simulator: actions of the hand.")] = 4,
+    things: Annotated[
+        int, typer.Option(metavar="N", min=1, max=12, help="Simulator: number of things at the start.")
+    ] = 4,
+    actions: Annotated[
+        int, typer.Option(metavar="N", min=0, max=100, help="Simulator: number of actions of the hand.")
+    ] = 4,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Simulator: seed of things, actions and noise.")] = 0,
     camera: Annotated[str, typer.Option(metavar="PATH", help="Simulator: still, sway or walk.")] = "still",
     record: Annotated[

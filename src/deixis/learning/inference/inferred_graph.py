@@ -28,9 +28,9 @@ from deixis.reasoning.description_logic.reasoners import Classification, classif
 from deixis.reasoning.description_logic.subsumption import (
     BEYOND,
     BeyondLessonsError,
+    ClassAxioms,
     PropertyEnds,
     Subsumption,
-    ToldClass,
 )
 from deixis.reasoning.errors import InconsistencyError
 
@@ -317,7 +317,7 @@ class _Told:
 
     after: After
 
-    def __call__(self, name: str) -> ToldClass:
+    def __call__(self, name: str) -> ClassAxioms:
         broader: set[str] = set()
         shows: set[tuple[str, str]] = set()
         for graph in CLASSES:
@@ -327,7 +327,7 @@ class _Told:
                     shows.add(self._restriction(triple.object))
                 else:
                     broader.add(value)
-        return ToldClass(frozenset(broader), frozenset(shows))
+        return ClassAxioms(frozenset(broader), frozenset(shows))
 
     def _restriction(self, node: Node) -> tuple[str, str]:
         ends = [

@@ -53,15 +53,17 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
     yield _held_line(len(table.holds), total)
     for waived in table.waived:
         what = "optional" if waived.fact.optional else f"weight {waived.fact.weight:g}"
-        yield f"Given up: {waived.fact}{_at(waived.fact)} [{what}]" + (", which goes against" if waived.because else "")
+        yield f"Given up: {waived.fact}{_source(waived.fact)} [{what}]" + (
+            ", which goes against" if waived.because else ""
+        )
         yield from (f"    {fact.source or 'stated'}: {fact}" for fact in waived.because)
         yield from (f"    {sized}" for sized in waived.sizes)
     for a, b in table.overlapping:
         yield f"Overlap: {a} and {b} could not be laid apart."
     for fact in table.named_otherwise:
-        yield f"Note: {fact}{_at(fact)} holds, but the exact word for two things that overlap in part is another one."
+        yield f"Note: {fact}{_source(fact)} holds, but the exact word for these two overlapping boxes is another one."
     for fact in table.not_shown:
-        yield f"Note: {fact}{_at(fact)} does not hold on this table; no place was found where it does."
+        yield f"Note: {fact}{_source(fact)} does not hold on this table; no place was found where it does."
     for entry in table.claims:
         if entry.verdict in (ClaimVerdict.VIOLATED, ClaimVerdict.WAIVED):
             yield f"Note: {entry} does not hold on this table; no place was found where it does."
@@ -85,7 +87,7 @@ def _cm(metres: float) -> str:
     return f"{100 * metres:.1f}"
 
 
-def _at(fact: Fact) -> str:
+def _source(fact: Fact) -> str:
     return f" ({fact.source})" if fact.source else ""
 
 

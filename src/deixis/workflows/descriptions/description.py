@@ -373,7 +373,7 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     if phrase.members:
         first, *others = (_description(one, depth + 1) for one in phrase.members)
         if phrase.joined_by == "or":
-            return _either(first, others)
+            return _of_either_noun(first, others)
         denied = [_denied(one) for one in others if one.negated and (not one.noun or _same(one.noun, first.noun))]
         return replace(
             first,
@@ -405,7 +405,7 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     )
 
 
-def _either(first: Description, others: Sequence[Description]) -> Description:
+def _of_either_noun(first: Description, others: Sequence[Description]) -> Description:
     """Return the description of *the window or mirror by the bed*: what follows the last noun holds of each."""
     nouns = tuple(dict.fromkeys(one.noun for one in others if one.noun and one.noun != first.noun))
     last = others[-1]

@@ -63,7 +63,7 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
     for name in wanted:
         occupant, own = occupied_by.get(name), roles[name].perceived
         if occupant is not None and own is not None:
-            found[name] = _moved(boxes[own], boxes[occupant].mean(axis=0))
+            found[name] = _centred_at(boxes[own], boxes[occupant].mean(axis=0))
     rest = [name for name in wanted if name not in found]
     anchors = in_place | found
     example = _example(checked, time_limit) if rest and anchors else {}
@@ -149,7 +149,7 @@ def _size(box: Box) -> float:
     return float(np.ptp(box, axis=0).max()) or 1e-9
 
 
-def _moved(box: Box, centre: NDArray[np.float64]) -> Box:
+def _centred_at(box: Box, centre: NDArray[np.float64]) -> Box:
     half: NDArray[np.float64] = np.ptp(box, axis=0) / 2
     return np.stack([centre - half, centre + half])
 

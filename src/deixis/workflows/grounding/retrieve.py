@@ -217,7 +217,7 @@ def _known_layouts(memory: Knowledge | None, among: Path | None, deadline: Deadl
     for layout in layouts:
         name = layout.name if names.count(layout.name) == 1 else layout.lesson
         known[name] = Described(name, layout.graph(default_ontology().relations))
-    return _some(known, "layout")
+    return _require_known(known, "layout")
 
 
 def _known_scenes(
@@ -234,7 +234,7 @@ def _known_scenes(
         first = {lesson.texts[1]: lesson for lesson in reversed(recollection.lessons)}
         known |= {one.lesson: one.scene for one in first.values()}
     shown = {name: scene.without_labels() if hide_labels else scene for name, scene in sorted(known.items())}
-    return {name: _seen(name, scene) for name, scene in _some(shown, "scene").items()}
+    return {name: _seen(name, scene) for name, scene in _require_known(shown, "scene").items()}
 
 
 def _files(folder: Path, pattern: str, what: str) -> list[Path]:
@@ -246,7 +246,7 @@ def _files(folder: Path, pattern: str, what: str) -> list[Path]:
     return found
 
 
-def _some(known: dict[str, Known], what: str) -> dict[str, Known]:
+def _require_known(known: dict[str, Known], what: str) -> dict[str, Known]:
     if not known:
         raise DeixisError(f"retrieve: no {what} has been learned; learn one first, or name a folder with --among DIR")
     return known

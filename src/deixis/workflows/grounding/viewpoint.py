@@ -25,7 +25,7 @@ MIN_VIEWPOINT_PROBABILITY, MAX_VIEWPOINTS = 0.005, 8
 MIN_CONCENTRATION = 0.5
 """Least mean resultant length of the angles of one viewpoint: that of an even spread over 217 degrees."""
 
-_NO_VIEWPOINT_NOTE = "the scene was taken as it stands: nothing tells from which side the description speaks"
+_NO_VIEWPOINT_NOTE = "the scene was taken as it is: nothing indicates from which side it was described"
 
 
 @dataclass(frozen=True, slots=True)

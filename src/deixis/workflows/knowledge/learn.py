@@ -186,8 +186,9 @@ def _lesson(
     started = datetime.now(UTC)
     found = answer(request)
     if not found.object_matches:
-        where = f"the script {script.file} names was found in the scene {scene.file}"
-        raise NothingFoundError(f"nothing that {where}, so nothing was learned")
+        raise NothingFoundError(
+            f"no object of the script {script.file} was found in the scene {scene.file}, so nothing was learned"
+        )
     knows = knowledge.memory().knows if knowledge.exists() else lambda name: False
     lesson_id = next_lesson_id(layout_name(script), lambda name: name in taken or knows(name))
     taken.add(lesson_id)

@@ -437,7 +437,7 @@ class _Remembering:
                 question, words = replace(question, kind="whether_there"), frozenset({EXPECTED})
                 search = replace(search, subjects=unseen, predicates=words, objects=None)
                 found = search.run(self.board)
-            otherwise = self._otherwise(question, search) if not found else ()
+            otherwise = self._actual_places(question, search) if not found else ()
             if not found and not otherwise:
                 raise _NotKnownError(self._reason(question))
         except _NotKnownError as error:
@@ -460,7 +460,7 @@ class _Remembering:
             for each in found
         )
 
-    def _otherwise(self, question: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
+    def _actual_places(self, question: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
         """Return where the thing of a yes-or-no question was instead, if that is recorded."""
         if question.kind == "whether_did" and question.event != "shown":
             held = replace(search, edge=Edge.HOLDS, event=None, pick=Pick.ALL, predicates=self.relations or self.places)
@@ -558,13 +558,13 @@ def _sentence(found: Recall) -> str:
     if kind in ("gone", "come", "moved", "when_did", "whether_did"):
         words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[question.event or kind]
         edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
-        sentences = _distinct(f"the {fact.name} {words} {_at(found, end.lower, end.upper)}{_source(fact)}"
+        sentences = _distinct(f"the {fact.name} {words} {_time_phrase(found, end.lower, end.upper)}{_source(fact)}"
                          for fact, end in zip(facts, edge, strict=True))  # fmt: skip
         return f"Yes: {'; '.join(sentences)}." if kind == "whether_did" else _capital("; ".join(sentences))
     if kind in ("shown", "who"):
         sentences = _distinct(
             f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "
-            f"{fact.name} {_at(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
+            f"{fact.name} {_time_phrase(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
             for fact in facts
         )
         return _capital("; ".join(sentences))
@@ -618,7 +618,7 @@ def _source(fact: Recalled) -> str:
     return f" ({source.origin.value}{by}{sure})"
 
 
-def _at(found: Recall, lower: float, upper: float) -> str:
+def _time_phrase(found: Recall, lower: float, upper: float) -> str:
     return f"at {_time(found, lower, upper)}" if lower == upper else _time(found, lower, upper)
 
 

@@ -263,7 +263,7 @@ class _Chosen:
             and (not whole or self.sentence in (None, plain(lesson.told_text or lesson.script_text)))
             and (wanted.table is None or self._is_table(lesson.scene_file, lambda: _boxes_of(lesson.scene_text)))
             and (wanted.teacher is None or wanted.teacher == lesson.teacher)
-            and self._is_then(lesson.started)
+            and self._is_in_time(lesson.started)
         )
 
     def holds_of_teaching(self, turn: Teaching, view: str) -> bool:
@@ -277,7 +277,7 @@ class _Chosen:
             and (wanted.view is None or wanted.view == view)
             and (wanted.table is None or self._is_table(str(turn.metadata.get("scene", "")), lambda: boxes))
             and (wanted.teacher is None or wanted.teacher == turn.teacher)
-            and self._is_then(turn.time)
+            and self._is_in_time(turn.time)
         )
 
     def holds_of_fluent(self, fluent: EpisodicFluent, moment: Callable[[float], datetime], whole: bool = True) -> bool:
@@ -298,10 +298,12 @@ class _Chosen:
                 or (statement.predicate in NAMED and category_name(statement.object or "?") == self.label)
             )
             and (wanted.teacher is None or wanted.teacher == fluent.source.by)
-            and ((wanted.since is None and wanted.until is None) or (isfinite(start) and self._is_then(moment(start))))
+            and (
+                (wanted.since is None and wanted.until is None) or (isfinite(start) and self._is_in_time(moment(start)))
+            )
         )
 
-    def _is_then(self, moment: datetime) -> bool:
+    def _is_in_time(self, moment: datetime) -> bool:
         since, until = self.all.since, self.all.until
         return (since is None or since <= moment) and (until is None or moment < until)
 

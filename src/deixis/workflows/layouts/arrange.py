@@ -205,7 +205,7 @@ def arrange(task: Arrangement, boxes: Array, rng: np.random.Generator, deadline:
         if not len(unmet) or since > MAX_STALE_MOVES or deadline.passed:
             break
         statement = int(rng.choice(unmet))
-        moved = _moved(task, statement, best, rng)
+        moved = _randomly_moved(task, statement, best, rng)
         if moved is None or (_overlaps(moved) & ~allowed).any() or not task.firm(moved):
             continue
         found = task.degrees(moved)
@@ -228,7 +228,7 @@ def _overlaps(boxes: Array) -> NDArray[np.bool_]:
     return found
 
 
-def _moved(task: Arrangement, statement: int, boxes: Array, rng: np.random.Generator) -> Array | None:
+def _randomly_moved(task: Arrangement, statement: int, boxes: Array, rng: np.random.Generator) -> Array | None:
     """Return the boxes after a random move of a thing of a statement that does not hold."""
     subjects, others = task.things_of(statement)
     claim = task.claims[statement - len(task.graded)] if statement >= len(task.graded) else None

@@ -238,7 +238,7 @@ def predict(
     layings = [laying for each in activities for laying in each.layings]
     largest = StepSequence.of(
         Fluent(f"{kind}_{number}", Statement(kind, "placed"))
-        for kind, count in _most(layings).items()
+        for kind, count in _max_counts(layings).items()
         for number in range(count)
     )
     laid = () if source is None else sequence_of(source).laying
@@ -250,7 +250,7 @@ def _known(known: str | Path | Sequence[Activity]) -> tuple[Activity, ...]:
     return read_activities(known) if isinstance(known, str | Path) else tuple(known)
 
 
-def _most(layings: Sequence[Laying]) -> Counter[str]:
+def _max_counts(layings: Sequence[Laying]) -> Counter[str]:
     """Return the largest number of things of each kind in one laying."""
     most: Counter[str] = Counter()
     for laying in layings:

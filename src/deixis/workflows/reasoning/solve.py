@@ -123,7 +123,7 @@ def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
     joined = {end.name for link in links_between(calculi) for end in (link.source, link.target)}
     for each in calculi:
         if len(calculi) > 1 and each.name not in joined:
-            raise DeixisError(f"--calculus {text}: nothing joins {each.name} to the others")
+            raise DeixisError(f"--calculus {text}: no bridge connects {each.name} with the others")
     return calculi, ()
 
 

@@ -173,7 +173,7 @@ def track(
     latest = LatestFrames(source) if live else None
     with Tracker(settings) as tracker:
         for frame in (latest or source).frames():
-            now, problem = _after(tracker, frame, last)
+            now, problem = _situation_after(tracker, frame, last)
             notes += [f"frame {frame.number}, {frame.at:.2f} s: {note}" for note in now.notes][: MAX_NOTES - len(notes)]
             left_out += problem
             frames += not problem
@@ -194,7 +194,7 @@ def track(
     )
 
 
-def _after(tracker: Tracker, frame: Frame, last: Situation | None) -> tuple[Situation, bool]:
+def _situation_after(tracker: Tracker, frame: Frame, last: Situation | None) -> tuple[Situation, bool]:
     """Return the situation after a frame, and True if the frame could not be used."""
     if frame.problem is not None:
         before = last or Situation(frame.at, frame.number)

@@ -192,7 +192,7 @@ def test_a_conflict_cut_short_says_that_it_may_not_be_minimal() -> None:
     [
         (CHAIN, ["--calculus", "alen"], "did you mean 'allen'"),
         (CHAIN, ["--calculus", "allen+allen"], "each calculus once"),
-        (CHAIN, ["--calculus", "allen+rcc8"], "nothing joins allen"),
+        (CHAIN, ["--calculus", "allen+rcc8"], "no bridge connects allen"),
         (CHAIN, ["--calculus", "allen", "--closure", "--scenario"], "exclude each other"),
         (CHAIN, ["--calculus", "allen", "-o", "x.csp"], "give one of them"),
         ("1\n0 1 ( ra:<,= )\n.", ["--calculus", "ra+cd", "--explain", "0", "1"], "one calculus at a time"),

@@ -122,7 +122,7 @@ def test_no_side_is_recovered_where_nothing_tells_one(viewpoint: str, tmp_path: 
     _, stated, _ = deixis("ground", script, SCENE, "--json")
     assert code == 0
     assert matches(out) == matches(stated)
-    assert any("nothing tells from which side" in note for note in json.loads(out)["notes"])
+    assert any("nothing indicates from which side" in note for note in json.loads(out)["notes"])
     assert json.loads(out)["viewpoints"] == []
 
 
@@ -214,7 +214,7 @@ def test_no_side_is_inferred_when_no_compared_pair_was_found(viewpoint: str, tmp
     _, out, err = deixis("ground", script, scene, "--viewpoint", viewpoint, "--json")
     assert matches(out) == {}, err
     (note,) = [note for note in json.loads(out)["notes"] if note.startswith("the scene was taken")]
-    assert "nothing tells from which side" in note
+    assert "nothing indicates from which side" in note
 
 
 def test_a_match_is_at_most_as_probable_as_its_viewpoints(tmp_path: Path) -> None:
@@ -245,7 +245,7 @@ def test_no_side_is_told_where_every_angle_does_as_well(tmp_path: Path) -> None:
     scene.write_text(json.dumps(things), encoding="utf-8")
     _, out, err = deixis("ground", script, scene, "--viewpoint", "unknown", "--json")
     assert matches(out) == {"cup": "small", "box": "o1"}, err
-    assert any("nothing tells from which side" in note for note in json.loads(out)["notes"])
+    assert any("nothing indicates from which side" in note for note in json.loads(out)["notes"])
 
 
 def test_a_ruled_out_match_leaves_an_uncertain_label_uncertain(tmp_path: Path) -> None:
