@@ -239,7 +239,8 @@ class VerbChunker(RelatorChunker):
             if self._previous() == "NP" and i == at and self.nouns.ends_as_verb(at):
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
             return self._unknown_participle(at, i, group)
-        found = _with(group, form.lemma, form.kind, form.form)
+        lays = norm == "lay" and group.modal is not None  # 'you may lay it there'
+        found = _with(group, "lay", form.kind, "base") if lays else _with(group, form.lemma, form.kind, form.form)
         end = i + 1
         apart = self.norms[end] in PARTICLES and (self.norms[end] != "over" or form.lemma in _TURNING_OVER)
         if form.kind == "posture" and apart and self.nouns.is_determiner(end + 1):

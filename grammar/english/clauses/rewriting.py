@@ -106,7 +106,8 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
         if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
-            of = kept[0] if aimed and kept[0].type == "NP" else kept[-1]  # 'A is on the left of B (farthest from C)'
+            subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
+            of = kept[subjects[-1]] if aimed and subjects else kept[-1]  # 'A is on the left of B (farthest from C)'
             noun = replace(of.value, determiner="the", count=None)
             named = Chunk("NP", of.start, of.end, noun, of.span)
             after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
