@@ -814,7 +814,9 @@ def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
         again = again or (chunk.type == "MEASURE" and type_at(chunks, i + 1) == "PREP")
         at = len(found) - 2
         if put and chunk.type == "PREP" and _is_filled(found):  # 'put a jug filled with water between the cups'
-            found.insert(at, Chunk("COMMA", found[at].start, found[at].start, None, (found[at].span[0],) * 2))
+            found.insert(
+                at, Chunk("COMMA", found[at].start, found[at].start, None, (found[at].span[0], found[at].span[0]))
+            )
             found += [Chunk("COMMA", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])), chunk]
             continue
         while type_at(found, at) == "OF" and type_at(found, at - 1) == "NP":
