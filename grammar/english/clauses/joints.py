@@ -390,6 +390,8 @@ def _turned_clause_follows(chunks: list[Chunk], types: list[str], at: int) -> bo
     i = at
     while tuple(types[i : i + 2]) in _OF_PLACES:
         i += 2 if types[i] in ("PREP", "OF") else 1
+        amid = types[i - 2] == "PREP" and chunks[i - 2].value.preposition.relation == "between"
+        i += 2 * (amid and types[i : i + 2] == ["AND", "NP"])  # 'and between them and the brie goes a pot'
     if i == at:
         return False
     i += types[i : i + 1] == ["COMMA"]
