@@ -218,6 +218,8 @@ def _subject_follows(
     shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
     if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
         phrase = chunks[end].value
+        if phrase.negated and following == "PREP" and _same_place_again(chunks, types, start, at, after):
+            return True  # 'the stamp is on the letter, not the letter on the stamp'
         if (
             phrase.pronoun == "one" and phrase.determiner in ("the", "this") and not phrase.adjectives
         ) or phrase.negated:
