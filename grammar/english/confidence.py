@@ -45,10 +45,11 @@ SHARE_RIGHT = {
 }
 """Share of right facts among those with one guess.
 
-Fitted on texts in tests/grammar/english/texts: the guesses that occur fewer than ten times there, or mostly in texts
-that the reader was changed for, on facts that earlier readers read from texts before they were changed for them.
+``THOSE`` and ``BARE`` are fitted on facts that earlier versions of the reader read from texts before it was changed
+for them. The other guesses are rare there, and are fitted on all texts in ``tests/grammar/english/texts``; without
+those for which the reader was changed, ``OF_THE_LAST`` is 0.71 of 14 facts. ``PRONOUN`` counts as no doubt by itself.
 Unknown nouns, the number of words left out, the length of a clause and the distance between subject and place tell
-little: with all of them, a logistic regression keeps 0.89 of the right facts at a share of 0.89.
+little: with all of them, a logistic regression over 1079 facts keeps 0.89 of the right facts at a share of 0.89.
 """
 
 

@@ -148,8 +148,7 @@ def _sentence(
 
 def _cost(sentence: Sentence) -> int:
     """Return how much of a sentence is not understood, or understood by guesses: words and doubtful steps."""
-    said = [(clause, clause.guesses) for clause in sentence.clauses]
-    guesses = sum(len(found) for _, found in said) + len(sentence.guesses)
+    guesses = sum(len(clause.guesses) for clause in sentence.clauses) + len(sentence.guesses)
     note = sentence.fragment is not None
     return sentence.words - sentence.words_understood + 2 * guesses + note
 

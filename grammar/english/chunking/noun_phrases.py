@@ -269,6 +269,9 @@ class NounChunker(ModifierFinder):
                 named = self._letter(i + 1)
                 if named is not None:
                     return lettered(named, i + 2)
+        shaped = bool(modifiers) and modifiers[-1].dimension == "shape"
+        if not nouns and shaped and determiner == "the" and len(modifiers) == 1 and self._nouns.knows(norms[i - 1]):
+            nouns, modifiers = [norms[i - 1]], ()  # 'facing the square'
         if not nouns:
             if determiner is None and owner is None and count is None:
                 if len(modifiers) and any(a.dimension != "rank" for a in modifiers):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 
 from deixis.grammar.english.chunking.chunk import JOINT_TYPES, Chunk
 from deixis.grammar.english.chunking.noun_positions import is_known
@@ -82,6 +83,7 @@ def _agrees(noun: str, verb: str, form: str | bool, nouns: KnownNouns) -> bool:
     return (form == "base" and plural) or form == "past"
 
 
+@cache
 def _relating() -> frozenset[str]:
     return frozenset(prepositions().keys() | places_alone().keys() | _DETERMINERS)
 

@@ -337,6 +337,8 @@ class VerbChunker(RelatorChunker):
         if form.form == "base":
             subject = self._previous()
             subject_is_you = subject == "NP" and self.norms[self.chunks[-1].start] == "you"
+            if subject_is_you and not _RARELY.isdisjoint(group.adverbs):
+                return self._finite(at, end, found)  # 'you rarely find the stapler there'
             if (
                 norm in FIND_VERBS
                 and norm in ("choose", "select", "pick", "find", "click", "locate", "hit")
@@ -585,6 +587,8 @@ class VerbChunker(RelatorChunker):
             norm in IS_FORMS or norm in self._verbs or norm in NEGATIONS or (norm in ADVERBS and self._goes_on(at + 1))
         )
 
+
+_RARELY = word_set("rarely seldom hardly scarcely")
 
 _GETTING = word_set("get gets got getting")
 """Verbs that make a passive, as *be* does."""

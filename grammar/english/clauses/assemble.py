@@ -423,6 +423,9 @@ class Assembly:
         if phrase.negated and not phrase.members and not phrase.head:
             misunderstood(span, "this says which things are not meant", "say it of the things that are meant")
             return  # 'the glasses on the shelf, not those by the till'
+        if phrase.negated and phrase.head and self.clauses:
+            denied = tuple(replace(p, positive=not p.positive) for p in phrase.predicates)
+            phrase = replace(phrase, negated=False, predicates=denied)
         more = (*noun.extra, *(p for part in said for p in part.predicates))
         if self.asks:
             mood = Mood.QUESTION

@@ -275,8 +275,10 @@ class Builder(Transformer[Any, Built]):
         flat_below = last_word(noun.head) in SURFACES  # 'the cake on the windowsill with a cloth over it'
         over = {p.relation for p in mods if p.of_one} <= {"above", "around"}
         outer = tuple(p for p in mods if p.of_one) if noun.plural or (flat_below and over) else ()
+        if noun.determiner is not None:  # 'on a table under the skylight with the pedal on the floor beneath it'
+            outer += tuple(p for p in mods if _is_absolute(p))
         if outer:  # 'the plate above the forks with a knife across it'
-            mods = tuple(p for p in mods if not p.of_one)
+            mods = tuple(p for p in mods if p not in outer)
             return Noun(_restricted(noun, mods) if mods else noun, outer)
         return Noun(_restricted(noun, mods))
 
@@ -546,6 +548,13 @@ class Builder(Transformer[Any, Built]):
     def whose(self, whose: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *whose handle points to the right*."""
         return tuple(replace(p, subject_part=noun.phrase) for p in flat(verb))
+
+
+def _is_absolute(predicate: Predicate) -> bool:
+    """Return True for *with the pedal on the floor*: a definite thing that is somewhere itself."""
+    thing = predicate.arguments[0] if predicate.relation == "with" and predicate.arguments else None
+    placed = thing is not None and any(p.arguments for p in thing.predicates)
+    return thing is not None and placed and thing.determiner == "the" and bool(thing.head)
 
 
 def _is_second_content(vessels: NounPhrase, other: NounPhrase) -> bool:

@@ -225,6 +225,8 @@ def _subject_follows(
     shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
     if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
         phrase = chunks[end].value
+        if phrase.negated and following == "PREP" and _same_place_again(chunks, types, start, at, after):
+            return True  # 'the stamp is on the letter, not the letter on the stamp'
         if (
             phrase.pronoun == "one" and phrase.determiner in ("the", "this") and not phrase.adjectives
         ) or phrase.negated:
@@ -404,6 +406,8 @@ def _turned_clause_follows(chunks: list[Chunk], types: list[str], at: int) -> bo
     i = at
     while tuple(types[i : i + 2]) in _OF_PLACES:
         i += 2 if types[i] in ("PREP", "OF") else 1
+        amid = types[i - 2] == "PREP" and chunks[i - 2].value.preposition.relation == "between"
+        i += 2 * (amid and types[i : i + 2] == ["AND", "NP"])  # 'and between them and the brie goes a pot'
     if i == at:
         return False
     i += types[i : i + 1] == ["COMMA"]
