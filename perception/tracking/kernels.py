@@ -29,16 +29,19 @@ def depths(points, row, offset):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def compared(depth, colour, reference, shade, labels, level, count, tolerance, noise, least_colour, reach):  # type: ignore[no-untyped-def]
+def compared(  # type: ignore[no-untyped-def]
+    depth, colour, reference, shade, labels, level, count, tolerance, noise, least_colour, reach, bins
+):
     """Return the state of each pixel (r, c), and how many pixels of each label are in each state.
 
-    Pixels without a reference that show the table (depths ``level``) get the reference of the table. ``reach`` is the
-    distance in pixels within which an equal depth of the reference is looked for.
+    Pixels without a reference that show the table (depths ``level``, colours in ``bins``) get the reference of the
+    table. ``reach`` is the distance in pixels within which an equal depth of the reference is looked for.
     """
     rows, columns = depth.shape
     state = np.empty((rows, columns), np.uint8)
     counts = np.zeros((count + 1, STATES), np.int64)
     square = least_colour * least_colour
+    step = len(bins) / np.float32(256)
     for i in range(rows):
         for j in range(columns):
             z, label = depth[i, j], labels[i, j]
@@ -47,7 +50,8 @@ def compared(depth, colour, reference, shade, labels, level, count, tolerance, n
                 found = MISSING
             elif reference[i, j] <= 0:
                 found = UNKNOWN
-                if abs(z - level[i, j]) < near:
+                r, g, b = int(colour[i, j, 0] * step), int(colour[i, j, 1] * step), int(colour[i, j, 2] * step)
+                if abs(z - level[i, j]) < near and bins[r, g, b]:
                     reference[i, j], labels[i, j], label = level[i, j], 0, 0
                     for k in range(3):
                         shade[i, j, k] = colour[i, j, k]

@@ -283,9 +283,14 @@ class Pipeline:
         return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)])
 
     def seen_at_place(
-        self, image: FrameImage, view: TableView, taken: NDArray[np.bool_], noise: float
+        self,
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        noise: float,
+        pose: NDArray[np.float64] | None = None,
     ) -> tuple[float, float]:
-        """Compare a frame with the thing in its present pose.
+        """Compare a frame with the thing in a pose.
 
         Parameters
         ----------
@@ -295,13 +300,16 @@ class Pipeline:
             Mask (r, c) of the pixels that belong to something else.
         noise
             Standard deviation of depths at one metre.
+        pose
+            The pose; by default the present one.
 
         Returns
         -------
         tuple
             Share of the points that agree, of those that nothing hides; and the share of points that nothing hides.
         """
-        inliers, exposed, _ = self._seen(self.pose[:3, 3], _quaternion(self.pose), image, view, taken, noise)
+        at = self.pose if pose is None else pose
+        inliers, exposed, _ = self._seen(at[:3, 3], _quaternion(at), image, view, taken, noise)
         return inliers / max(exposed, 1.0), exposed / len(self._points)
 
     def _seen(

@@ -35,6 +35,7 @@ from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Changes, 
 from deixis.perception.tracking.registration import levels_of
 from deixis.perception.tracking.revolution import circle_around
 from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.table_colours import TableColours
 from deixis.perception.tracking.thing import Situation
 
 MIN_FINITE_SHARE = 0.02
@@ -67,8 +68,21 @@ EXPOSED = 0.3
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
 
+MIN_GAIN, LEAST_EXPOSED = 0.15, 0.1
+"""Least gain of agreement by which a thing that is mostly hidden has moved, and the least share of its points that
+nothing hides where it rested, for this comparison."""
+
+BACK, BACK_AFTER = 0.7, 0.3
+"""Agreement from which a thing that is not found is again where it rested, and the time for which it was not found."""
+
 RETRY_AFTER = 1.0
 """Time in seconds after which changed pixels that gave no thing are by themselves a reason to segment again."""
+
+MAX_TRIES = 2
+"""Number of segmentations that find no thing in pixels as high as the table, after which they are the table's."""
+
+FLAT = 0.002
+"""Height in metres up to which a point may be the table's."""
 
 BLINK = 1.5
 """Time in seconds between two frames from which anything may have happened in between."""
@@ -111,6 +125,7 @@ class Tracker:
         self._at: float | None = None
         self._frame: NDArray[np.float64] | None = None
         self._outline, self._hands = Outline(), Hands()
+        self._colours = TableColours()
         self._motion: CameraMotion | None = None
         self._moved_at = -np.inf
         self._rests = itertools.count(1)
@@ -250,7 +265,7 @@ class Tracker:
         self._view = table_view(image.optics, found.frame, image.depth.shape)
         heights = image.points.reshape(-1, 3) @ found.frame[2, :3] + found.frame[2, 3]
         on = np.abs(heights) < 0.01
-        self._outline, self._hands = Outline(), Hands()
+        self._outline, self._hands, self._colours = Outline(), Hands(), TableColours()
         self._outline.extend(image.places(np.flatnonzero(on), found.frame)[:, :2])
         self._noise = _noise(image.depth.ravel()[on], self._view.level.ravel()[on])
         return self._situation(at, number, self._lay_out(found, cloud, image, at, {}))
@@ -268,7 +283,8 @@ class Tracker:
         )
         plan = moved(image.points.reshape(-1, 3), self._view.back)
         beyond = self._outline.beyond(plan[:, :2]).reshape(of.shape) & (image.depth > 0)
-        self._reference.give(np.flatnonzero((of < 0) & (near | beyond)), TABLE, image)
+        self._colours.extend(image.colour[(of < 0) & near & (image.depth > 0)])
+        self._reference.give(np.flatnonzero((of < 0) & (near & self._is_table_coloured(image) | beyond)), TABLE, image)
         came = []
         for k in range(len(found.boxes)):
             own = np.flatnonzero(of == k)
@@ -451,9 +467,14 @@ class Tracker:
             self._motion.add_keyframe(image, levels, still, self._view, rests)
             on = np.flatnonzero(changes.same & (self._reference.owner == TABLE))
             self._outline.extend(image.places(on, self._back)[:, :2])
+            self._colours.extend(image.colour.reshape(-1, 3)[on])
             for thing in self._things:
                 thing.completed = False  # another side of it may be in view
         return changes
+
+    def _is_table_coloured(self, image: FrameImage) -> NDArray[np.bool_]:
+        """Return a mask (r, c) of the pixels whose colour the table may have."""
+        return self._colours.include(image.colour.reshape(-1, 3)).reshape(image.depth.shape)
 
     def _compare(self, image: FrameImage, at: float) -> Changes:
         assert self._reference is not None and self._view is not None
@@ -461,7 +482,7 @@ class Tracker:
         settings = self.settings
         return self._reference.compared(
             image, self._view.level, labels, settings.tolerance, self._deviation, settings.colour,
-            EDGE_REACH if at - self._moved_at < UNSTEADY_FOR else 0,
+            EDGE_REACH if at - self._moved_at < UNSTEADY_FOR else 0, self._colours,
         )  # fmt: skip
 
     def _look_at_resting(self, image: FrameImage, changes: Changes, at: float) -> None:
@@ -527,7 +548,7 @@ class Tracker:
         same = changes.same
         free = np.flatnonzero(~same & (image.depth > 0))
         points = image.places(free, view.back)
-        above = points[:, 2] > 0.002
+        above = (points[:, 2] > FLAT) | ~self._is_table_coloured(image).ravel()[free]
         free, points = free[above], points[above]
         tints = image.colour.reshape(-1, 3)[free].astype(np.float64)
 
@@ -541,6 +562,9 @@ class Tracker:
                 self._carry(thing)
         for thing, found, fit, visible in self._each(follow, moving):
             if not self._is_certain(thing, found, fit, visible, at, seconds):
+                if self._is_back(thing, image, same, at):
+                    self._claim(thing, image, changes)
+                    continue
                 if thing.found:
                     self._carry(thing)
                 thing.lost()
@@ -557,7 +581,8 @@ class Tracker:
         points, tints = points[left], tints[left]
         for thing, found, fit, visible in self._each(follow, doubtful):
             way = float(np.linalg.norm(found.place - thing.pose[:3, 3]))
-            if MIN_WAY < way < limits.jump and fit > 0.6 and visible > limits.visible:
+            moved_there = MIN_WAY < way < limits.jump and fit > 0.6 and visible > limits.visible
+            if moved_there and not self._is_as_likely_at_rest(thing, fit, image, same):
                 self._start(thing)
                 thing.moved_to(found.pose, at, fit)
             else:
@@ -574,6 +599,32 @@ class Tracker:
         way = thing.way_from_expected(found.place, seconds)
         lost = at - thing.seen_at - seconds if thing.active and not thing.in_hand else 0.0
         return way < limits.jump + MAX_SPEED * max(lost, 0.0) or (fit > 0.7 and visible > 0.5)
+
+    def _is_as_likely_at_rest(
+        self, thing: Pipeline, fit: float, image: FrameImage, same: NDArray[np.bool_]
+    ) -> bool:
+        """Return True if a thing agrees as well with a frame where it rested as where it was found."""
+        agreement, exposed = self._seen_where_it_rested(thing, image, same)
+        return exposed > LEAST_EXPOSED and agreement > fit - MIN_GAIN
+
+    def _is_back(self, thing: Pipeline, image: FrameImage, same: NDArray[np.bool_], at: float) -> bool:
+        """Let a thing that was not found rest where it rested before, if the frame shows it there."""
+        if at - thing.seen_at < BACK_AFTER:
+            return False
+        agreement, exposed = self._seen_where_it_rested(thing, image, same)
+        if exposed < EXPOSED or agreement < BACK:
+            return False
+        thing.put(thing.last_rest)
+        thing.moved_to(thing.last_rest, at, agreement)
+        self._settle(thing)
+        return True
+
+    def _seen_where_it_rested(
+        self, thing: Pipeline, image: FrameImage, same: NDArray[np.bool_]
+    ) -> tuple[float, float]:
+        assert self._reference is not None and self._view is not None
+        taken = same & (self._reference.owner != thing.slot)
+        return thing.seen_at_place(image, self._view, taken, self._noise, thing.last_rest)
 
     def _carry(self, thing: Pipeline) -> None:
         """Move a thing that left its place and is not seen with the hand that may hold it."""
@@ -678,7 +729,9 @@ class Tracker:
         if not len(free):
             return ()
         points = image.places(free, self._back)
-        flat = (np.abs(points[:, 2]) < 0.002) | self._outline.beyond(points[:, :2])
+        level = np.abs(points[:, 2]) < FLAT
+        nothing = self._is_table_coloured(image).ravel()[free] | (reference.tries.ravel()[free] >= MAX_TRIES)
+        flat = (level & nothing) | self._outline.beyond(points[:, :2])
         reference.give(free[flat], TABLE, image)
         free, points = free[~flat], points[~flat]
         owner, edge = reference.owner.ravel()[free], self._edges(free, at)
@@ -745,6 +798,7 @@ class Tracker:
                     thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
                     thing.beneath = reference.give(pixels, thing.slot, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
+        reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
         return tuple(came)
 
     def _recognised(self, image: FrameImage, changes: Changes, pixels: NDArray[np.intp], at: float) -> Pipeline | None:
