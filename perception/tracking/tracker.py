@@ -84,6 +84,9 @@ MAX_TRIES = 2
 FLAT = 0.002
 """Height in metres up to which a point may be the table's."""
 
+BLIND_FOR = 1.5
+"""Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
+
 BLINK = 1.5
 """Time in seconds between two frames from which anything may have happened in between."""
 
@@ -127,7 +130,7 @@ class Tracker:
         self._outline, self._hands = Outline(), Hands()
         self._colours = TableColours()
         self._motion: CameraMotion | None = None
-        self._moved_at = -np.inf
+        self._moved_at = self._placed_at = -np.inf
         self._rests = itertools.count(1)
         self._optics: Optics | None = None
         self._view: TableView | None = None
@@ -176,7 +179,9 @@ class Tracker:
             return self._begin(cloud, at, number)
         assert self._optics is not None and self._view is not None and before is not None
         image = image_of(cloud, self._optics, self.settings.stride)
-        changes = self._seen_from_here(image, at)
+        changes, is_placed = self._seen_from_here(image, at)
+        if not is_placed and at - self._placed_at < BLIND_FOR:
+            return replace(self._situation(at, number), busy=True)
         if _camera_moved(changes):
             self._reference, self._things = None, []
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
@@ -446,13 +451,17 @@ class Tracker:
 
     # What rests and what moves
 
-    def _seen_from_here(self, image: FrameImage, at: float) -> Changes:
-        """Find where the camera is now, carry the reference to its view, and compare the frame with it."""
+    def _seen_from_here(self, image: FrameImage, at: float) -> tuple[Changes, bool]:
+        """Find where the camera is now, carry the reference to its view, and compare the frame with it.
+
+        The second value is False if a camera that has moved before is now at an unknown place.
+        """
         assert self._motion is not None and self._reference is not None and self._view is not None
         rests = {thing.slot: thing.rest for thing in self._things if not thing.active}
         found, levels = self._motion.follow(image, at, rests, self._noise)
         new = found is not None and self._motion.needs_keyframe()
         if found is not None:
+            self._placed_at = at
             if new:
                 self._motion.level(moved(image.points.reshape(-1, 3), self._motion.pose))
             view = table_view(image.optics, self._motion.pose, image.depth.shape)
@@ -470,7 +479,7 @@ class Tracker:
             self._colours.extend(image.colour.reshape(-1, 3)[on])
             for thing in self._things:
                 thing.completed = False  # another side of it may be in view
-        return changes
+        return changes, found is not None or np.isinf(self._moved_at)
 
     def _is_table_coloured(self, image: FrameImage) -> NDArray[np.bool_]:
         """Return a mask (r, c) of the pixels whose colour the table may have."""
