@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.scene import turned_axes
-from deixis.perception.tracking.image import TableView
+from deixis.perception.tracking.image import FrameImage, TableView
 from deixis.perception.tracking.pipeline import Pipeline, likeness
 from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Reference
 
@@ -42,6 +42,9 @@ MIN_LIKENESS = 0.05
 MIN_SLENDERNESS = 2.0
 """Least ratio of the length to the width of a thing that is continued behind others."""
 
+MIN_JOINT_SLENDERNESS = 3.0
+"""Least ratio of the length to the width of two short ends together, between which something hides the middle."""
+
 STRIP_MARGIN = 0.006
 """Distance in metres by which the continuation of a thing may be wider than the thing, on either side."""
 
@@ -50,6 +53,18 @@ MIN_IN_LINE = 0.6
 
 MAX_PIECE, MAX_LENGTH = 0.8, 0.28
 """Largest number of pixels of a piece, as a share of those of the thing, and length in metres of both together."""
+
+MIN_LIFTED, SUPPORT = 0.025, 0.03
+"""Height in metres from which a thing seems to float, and the depth below it in which the top of its support is."""
+
+MIN_BEFORE = 0.01
+"""Distance in metres by which a surface must be nearer than a place that it hides."""
+
+AXIS, AXIS_STEP = 0.008, 0.005
+"""Radius of the hidden stem below a thing, and the distance of the heights at which it is looked for, in metres."""
+
+MIN_HIDDEN = 0.8
+"""Least share of the places of the stem that something hides, for the thing to stand on it."""
 
 BEYOND = 0.005
 """Distance in metres from the box of a thing beyond which a point shows a part of it that was not seen before."""
@@ -80,6 +95,44 @@ def revealed_part(thing: Pipeline, reference: Reference, view: TableView) -> NDA
     own = np.flatnonzero(reference.owner == thing.slot)
     new = own[~thing.contains(reference.points(own, view), BEYOND)]
     return new if len(new) >= MIN_PART else new[:0]
+
+
+def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage, view: TableView) -> bool:
+    """Return True if a thing that seems to float stands on the table, with its foot behind something.
+
+    Parameters
+    ----------
+    thing
+        Thing at rest.
+    others
+        The other things at rest.
+    image, view
+        The frame, and its view of the table.
+
+    Returns
+    -------
+    bool
+        False for a thing that reaches down to the table or lies on another one, and where the frame shows what is
+        below it.
+    """
+    corners = _corners(thing)
+    middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
+    if bottom < MIN_LIFTED:
+        return False
+    below = np.array([(*middle[:2], z) for z in np.arange(bottom, bottom - SUPPORT, -AXIS_STEP)])
+    if any(other is not thing and other.contains(below, 0.0).any() for other in others):
+        return False
+    aside = AXIS * np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)])
+    stem = np.array([(*middle[:2], z) for z in np.arange(0.0, bottom, AXIS_STEP)])
+    seen = (stem[:, None] + aside).reshape(-1, 3) @ view.matrix.T + view.offset
+    column, row = np.rint(seen[:, :2] / np.maximum(seen[:, 2:], 1e-9)).astype(np.int64).T
+    rows, columns = image.depth.shape
+    inside = (row >= 0) & (column >= 0) & (row < rows) & (column < columns) & (seen[:, 2] > 0)
+    if not inside.any():
+        return False
+    depth = image.depth[row[inside], column[inside]]
+    hidden = (depth > 0) & (depth < seen[inside, 2] - MIN_BEFORE)
+    return bool(hidden.mean() >= MIN_HIDDEN)
 
 
 class FlatThing:
@@ -137,8 +190,10 @@ class FlatThing:
         high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
         self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
         self._others = (self._owner != TABLE) & (self._owner != UNKNOWN_OWNER) & ~self._seed
-        self._line = self._line_in(view, eye, level)
-        self._hiding = self._line & ((self._others & (depth < level)) | (self._owner == UNKNOWN_OWNER))
+        self._view, self._eye, self._level = view, eye, level
+        self._before = (self._others & (depth < level)) | (self._owner == UNKNOWN_OWNER)
+        self._line = self._own_line()
+        self._hiding = self._line & self._before
 
     def missing_part(self) -> NDArray[np.intp]:
         """Return the pixels of the table that are parts of the thing.
@@ -198,14 +253,18 @@ class FlatThing:
 
         if not self.is_seen:
             return []
-        reached = binary_propagation(self._seed, AROUND, self._seed | self._hiding | (self._line & self._others))
-        reached = binary_dilation(reached & (self._seed | self._hiding), AROUND, iterations=2)
         found = []
         for thing in things:
             own = self._owner == thing.slot
             together = thing.at == self._thing.at and thing.first_rest and self._thing.first_rest
             fits = together and 0 < own.sum() <= MAX_PIECE * self._seed.sum() and thing.oriented.extents[2] < FLAT
-            if not fits or not (reached & own).any() or (self._line & self._alike)[own].mean() < MIN_IN_LINE:
+            if not fits:
+                continue
+            line = self._line if self._is_slender else self._line_to(thing)
+            hiding = line & self._before
+            reached = binary_propagation(self._seed, AROUND, self._seed | hiding | (line & self._others))
+            reached = binary_dilation(reached & (self._seed | hiding), AROUND, iterations=2)
+            if not (reached & own).any() or (line & self._alike)[own].mean() < MIN_IN_LINE:
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
             other = np.array(thing.oriented.centre) + thing.pose[:3, 3]
@@ -214,16 +273,43 @@ class FlatThing:
                 found.append(thing)
         return found
 
-    def _line_in(self, view: TableView, eye: float, level: NDArray[np.float32]) -> Mask:
+    @property
+    def _is_slender(self) -> bool:
+        length, width, _ = self._thing.oriented.extents
+        return length >= MIN_SLENDERNESS * width
+
+    def _own_line(self) -> Mask:
         """Return a mask of the pixels at which the thing would be seen if it were longer."""
-        length, width, height = self._thing.oriented.extents
-        if length < MIN_SLENDERNESS * width:
-            return np.zeros(level.shape, np.bool_)
-        rows, columns = np.indices(level.shape) + np.array(self._corner)[:, None, None]
-        depth = np.where(np.isfinite(level), level, 0.0) * (1 - height / 2 / eye)
+        if not self._is_slender:
+            return np.zeros(self._level.shape, np.bool_)
+        across = turned_axes(self._thing.oriented.yaw)[1] @ self._thing.pose[:3, :3].T
+        return self._strip(_corners(self._thing) @ across, across)
+
+    def _line_to(self, thing: Pipeline) -> Mask:
+        """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another."""
+        ends = [_corners(each) for each in (self._thing, thing)]
+        along = ends[1].mean(axis=0) - ends[0].mean(axis=0)
+        along[2] = 0.0
+        along /= max(float(np.linalg.norm(along)), 1e-9)
+        across, both = np.array([-along[1], along[0], 0.0]), np.concatenate(ends)
+        if np.ptp(both @ along) < MIN_JOINT_SLENDERNESS * np.ptp(both @ across):
+            return np.zeros(self._level.shape, np.bool_)
+        return self._strip(both @ across, across)
+
+    def _strip(self, offsets: NDArray[np.float64], across: NDArray[np.float64]) -> Mask:
+        """Return a mask of the pixels that show places between the least and the greatest offset in a direction."""
+        rows, columns = np.indices(self._level.shape) + np.array(self._corner)[:, None, None]
+        height = self._thing.oriented.extents[2]
+        depth = np.where(np.isfinite(self._level), self._level, 0.0) * (1 - height / 2 / self._eye)
         rays = np.stack([columns, rows, np.ones(rows.shape)], axis=-1) * depth[..., None]
-        places = (rays - view.offset) @ np.linalg.inv(view.matrix).T
-        pose, box = self._thing.pose, self._thing.oriented
-        across = ((places - pose[:3, 3]) @ pose[:3, :3] - np.array(box.centre)) @ turned_axes(box.yaw)[1]
-        line: Mask = (depth > 0) & (np.abs(across) < width / 2 + STRIP_MARGIN)
+        at = (rays - self._view.offset) @ np.linalg.inv(self._view.matrix).T @ across
+        line: Mask = (depth > 0) & (at > offsets.min() - STRIP_MARGIN) & (at < offsets.max() + STRIP_MARGIN)
         return line
+
+
+def _corners(thing: Pipeline) -> NDArray[np.float64]:
+    """Return the corners (8, 3) of the turned box of a thing, in the table's frame."""
+    box, signs = thing.oriented, np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    own = signs * box.extents @ turned_axes(box.yaw) + box.centre
+    corners: NDArray[np.float64] = own @ thing.pose[:3, :3].T + thing.pose[:3, 3]
+    return corners

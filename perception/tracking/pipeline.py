@@ -380,6 +380,21 @@ class Pipeline:
         self._choose_points()
         self._filter.reset(self.pose)
 
+    def stand(self) -> None:
+        """Extend the box of the thing down to the table, on which it stands with a hidden foot."""
+        top = float(self.pose[2, 3] + self.oriented.centre[2] + self.oriented.extents[2] / 2)
+        x, y, _ = self.oriented.centre
+        points = self.cloud.points.copy()
+        points[:, 2] += np.float32(self.pose[2, 3] - top / 2)
+        self.cloud = PointCloud(points, self.cloud.colours)
+        self.half = np.array([*self.half[:2], top / 2])
+        self.oriented = OrientedBox((x, y, 0.0), self.oriented.yaw, (*self.oriented.extents[:2], top))
+        self.pose = self.pose.copy()
+        self.pose[2, 3] = top / 2
+        self._rest = self.pose
+        self._choose_points()
+        self._filter.reset(self.pose)
+
     def moved_to(self, pose: NDArray[np.float64], at: float, agreement: float) -> None:
         """Take a pose that was found in a frame.
 

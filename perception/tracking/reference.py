@@ -135,7 +135,9 @@ class Reference:
         )  # fmt: skip
         return Changes(state, counts)
 
-    def remember(self, image: FrameImage, changes: Changes, at: float, tolerance: float, noise: float) -> None:
+    def remember(
+        self, image: FrameImage, changes: Changes, at: float, tolerance: float, noise: float, colour: float
+    ) -> None:
         """Move the reference of unchanged pixels towards a frame, and note which depths are not steady.
 
         Parameters
@@ -144,14 +146,14 @@ class Reference:
             The frame, and its comparison with the reference.
         at
             Its time in seconds.
-        tolerance, noise
+        tolerance, noise, colour
             As in :meth:`compared`.
         """
         from deixis.perception.tracking.kernels import remembered
 
         remembered(
             changes.state, image.depth, image.colour, self.depth, self.colour, self._offset, self._last, self._aside,
-            self.since, at, tolerance, noise, np.float32(LEARNING_RATE),
+            self.since, at, tolerance, noise, colour, np.float32(LEARNING_RATE),
         )  # fmt: skip
 
     def points(self, pixels: NDArray[np.intp], view: TableView) -> NDArray[np.float64]:

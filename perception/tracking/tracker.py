@@ -9,7 +9,7 @@ things or the places of things that were lost.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -23,9 +23,9 @@ from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import OrientedBox, Scene
+from deixis.perception.scene import OrientedBox, Scene, turned_axes
 from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
-from deixis.perception.tracking.completion import FlatThing, revealed_part
+from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
 from deixis.perception.tracking.fitting import Fit, fits
 from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.outside import GAP, Hands, Outline
@@ -83,6 +83,12 @@ MAX_TRIES = 2
 
 FLAT = 0.002
 """Height in metres up to which a point may be the table's."""
+
+ON_ITS_OWNER = -2
+"""Mark of a pixel that may show something on the thing that has it in the reference."""
+
+FILLED = 0.5
+"""Least ratio of the sides of two boxes of one thing."""
 
 BLIND_FOR = 1.5
 """Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
@@ -185,7 +191,8 @@ class Tracker:
         if _camera_moved(changes):
             self._reference, self._things = None, []
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
-        self._reference.remember(image, changes, at, self.settings.tolerance, self._deviation)
+        limits = self.settings
+        self._reference.remember(image, changes, at, limits.tolerance, self._deviation, limits.colour)
         hand = self._hands.see(image, ~changes.same, self._outline, self._back)
         by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
         if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
@@ -298,10 +305,19 @@ class Tracker:
             elif not self._outline.is_crossed_by(image.places(own, self._back)):
                 came.append(self._enter(found, cloud, np.flatnonzero(found.labels == k), k, at))
                 self._reference.give(own, self._things[-1].slot, image)
+        self._let_stand(came, image)
         rests = {thing.slot: thing.rest for thing in self._things}
         assert self._motion is not None
         self._motion.add_keyframe(image, levels_of(image), self._reference.owner, self._view, rests)
         return tuple(came)
+
+    def _let_stand(self, ids: Collection[str], image: FrameImage) -> None:
+        """Extend new things down to the table whose feet are hidden."""
+        assert self._view is not None
+        resting = [thing for thing in self._things if not thing.active]
+        for thing in resting:
+            if thing.id in ids and stands_behind(thing, resting, image, self._view):
+                thing.stand()
 
     def _shown(self, labels: NDArray[np.int32], cloud: PointCloud) -> NDArray[np.int32]:
         """Return the labels of a cloud at the pixels that are compared."""
@@ -418,6 +434,7 @@ class Tracker:
                 thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
             ids[detected.id] = thing.id
             reference.give(pixels, thing.slot, image)
+        self._let_stand(came, image)
         situation = self._situation(at, number, tuple(came))
         return replace(situation, merged=tuple(thing.report(at) for thing in merged)), ids
 
@@ -496,14 +513,14 @@ class Tracker:
 
     def _look_at_resting(self, image: FrameImage, changes: Changes, at: float) -> None:
         """Decide by their pixels which resting things are still at their places."""
-        from deixis.perception.tracking.kernels import MISSING, NEARER, SAME
+        from deixis.perception.tracking.kernels import EDGE, MISSING, NEARER, SAME
 
         assert self._reference is not None
         for thing in self._things:
             if thing.active:
                 continue
             count = changes.counts[thing.slot]
-            measured = int(count.sum() - count[MISSING])
+            measured = int(count.sum() - count[MISSING] - count[EDGE])
             visible = measured - int(count[NEARER])
             if measured < MIN_OWN_PIXELS:
                 self._look_once_more(thing, image, at)
@@ -527,10 +544,10 @@ class Tracker:
 
     def _has_left(self, thing: Pipeline, changes: Changes) -> bool:
         """Return True if the place of a thing that was at rest shows what is behind it."""
-        from deixis.perception.tracking.kernels import COLOUR, FARTHER, MISSING, NEARER
+        from deixis.perception.tracking.kernels import COLOUR, EDGE, FARTHER, MISSING, NEARER
 
         count = changes.counts[thing.slot]
-        measured = int(count.sum() - count[MISSING])
+        measured = int(count.sum() - count[MISSING] - count[EDGE])
         visible, left = measured - int(count[NEARER]), int(count[FARTHER] + count[COLOUR])
         seen = visible >= max(MIN_OWN_PIXELS, 0.25 * measured)
         return seen and left > self.settings.moved * visible
@@ -731,6 +748,8 @@ class Tracker:
         self, cloud: PointCloud, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
     ) -> tuple[str, ...]:
         """Segment what changed and stays as it is; return the ids of new things."""
+        from deixis.perception.tracking.kernels import FARTHER
+
         reference, limits = self._reference, self.settings
         assert reference is not None
         steady = at - reference.since >= limits.steady
@@ -743,15 +762,22 @@ class Tracker:
         flat = (level & nothing) | self._outline.beyond(points[:, :2])
         reference.give(free[flat], TABLE, image)
         free, points = free[~flat], points[~flat]
-        owner, edge = reference.owner.ravel()[free], self._edges(free, at)
+        edge = self._edges(free, at)
+        owner = np.where(edge | (changes.state.ravel()[free] == FARTHER), UNKNOWN_OWNER, reference.owner.ravel()[free])
         for thing in self._things:
+            if not thing.active:  # what is nearer than a thing, or of another colour, may lie on it
+                owner[(owner == thing.slot) & thing.contains(points, limits.margin)] = ON_ITS_OWNER
+        left = np.ones(len(free), np.bool_)
+        for thing in sorted(self._things, key=lambda each: float(np.prod(each.oriented.extents))):
             turned = at - thing.settled_at < limits.turned_for
-            inside = thing.contains(points, limits.turned_margin if turned else limits.margin)
-            own = inside & ((owner != thing.slot) | edge) if not thing.active else np.zeros(len(free), np.bool_)
+            inside = left & thing.contains(points, limits.turned_margin if turned else limits.margin)
+            if thing.active:
+                left &= ~inside | (not thing.found)
+                continue
+            own = inside & (owner != ON_ITS_OWNER)
             reference.give(free[own], thing.slot, image)
-            drop = own | (inside if thing.active and thing.found else False)
-            free, points, owner, edge = free[~drop], points[~drop], owner[~drop], edge[~drop]
-        free = free[~edge]
+            left &= ~own
+        free = free[left & ~edge]
         untried = int((reference.retry_at.ravel()[free] <= at).sum())
         if untried < limits.least_pixels or at - self._detected_at < DETECTION_PAUSE:
             return ()
@@ -800,15 +826,35 @@ class Tracker:
                 if not enough or self._outline.is_crossed_by(image.places(pixels, self._back)):
                     continue
                 taken |= of == k
+                there = self._filled(found, k)
+                if there is not None:
+                    reference.give(pixels, there.slot, image)
+                    continue
                 again = self._recognised(image, changes, pixels, at)
                 if again is None:
                     came.append(self._enter(found, cloud, own, k, at))
                     thing = self._things[-1]
                     thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
                     thing.beneath = reference.give(pixels, thing.slot, image)
+        self._let_stand(came, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
         reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
         return tuple(came)
+
+    def _filled(self, found: Detection, k: int) -> Pipeline | None:
+        """Return the thing at rest whose box object ``k`` of a detection fills: it is the thing, which was hidden."""
+        assert self._frame is not None
+        change = self._frame @ np.linalg.inv(found.frame)
+        box = found.oriented[k]
+        corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+        corners = moved(corners * box.extents @ turned_axes(box.yaw) + box.centre, change)
+        least = FILLED * np.sort(box.extents)[::-1]
+        for thing in self._things:
+            sides = np.sort(thing.oriented.extents)[::-1]
+            fills = (FILLED * sides <= np.sort(box.extents)[::-1]).all() and (least <= sides).all()
+            if not thing.active and fills and thing.contains(corners, self.settings.turned_margin).all():
+                return thing
+        return None
 
     def _recognised(self, image: FrameImage, changes: Changes, pixels: NDArray[np.intp], at: float) -> Pipeline | None:
         """Return the lost thing that pixels show, put there; None if they show a new thing."""
