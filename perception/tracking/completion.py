@@ -45,6 +45,10 @@ MIN_SLENDERNESS = 2.0
 MIN_JOINT_SLENDERNESS = 3.0
 """Least ratio of the length to the width of two short ends together, between which something hides the middle."""
 
+CARRIED_MARGIN = 0.01
+"""Distance in metres by which the head of a thing that lies on another one may be wider than the rest, on either side.
+"""
+
 STRIP_MARGIN = 0.006
 """Distance in metres by which the continuation of a thing may be wider than the thing, on either side."""
 
@@ -136,7 +140,7 @@ def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage
 
 
 class FlatThing:
-    """Flat thing at rest, with the table and the other things around it.
+    """Flat thing at rest, with the table, or the thing that it lies on, and the other things around it.
 
     Parameters
     ----------
@@ -173,7 +177,11 @@ class FlatThing:
         self._seed, self._owner = own[self._window], reference.owner[self._window]
         depth, level = reference.depth[self._window], view.level[self._window]
         shade = reference.colour[self._window].astype(np.float64)
-        table = (self._owner == TABLE) & (depth > 0) & np.isfinite(level)
+        around = binary_dilation(self._seed, AROUND, iterations=3) & ~self._seed
+        owners, counts = np.unique(self._owner[around & (self._owner != UNKNOWN_OWNER)], return_counts=True)
+        carrier = int(owners[counts.argmax()]) if len(owners) else TABLE
+        self._is_carried = carrier != TABLE
+        table = (self._owner == carrier) & (depth > 0) & np.isfinite(level)
         bare = table & ~binary_dilation(self._seed, iterations=3)
         if bare.sum() < MIN_TABLE_PIXELS:
             self.is_seen = False
@@ -187,19 +195,23 @@ class FlatThing:
         like = thing.likeness(every)
         alike = (like > MIN_LIKENESS) & (like > likeness(every, ground[None]))
         self._alike = tinted & alike.reshape(tinted.shape)
-        high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
-        self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
-        self._others = (self._owner != TABLE) & (self._owner != UNKNOWN_OWNER) & ~self._seed
+        self._others = ~np.isin(self._owner, (TABLE, carrier, UNKNOWN_OWNER)) & ~self._seed
         self._view, self._eye, self._level = view, eye, level
         self._before = (self._others & (depth < level)) | (self._owner == UNKNOWN_OWNER)
         self._line = self._own_line()
         self._hiding = self._line & self._before
+        if self._is_carried:
+            self._candidate = table & self._alike & self._own_line(CARRIED_MARGIN)
+        else:
+            high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
+            self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
 
     def missing_part(self) -> NDArray[np.intp]:
-        """Return the pixels of the table that are parts of the thing.
+        """Return the pixels of the table, or of what the thing lies on, that are parts of the thing.
 
         Pixels that are higher than the rest of the noise, or of another colour than the table, are the thing's if they
-        are connected with it and are, as a whole, higher than the table or of the thing's colour. A long thing goes on
+        are connected with it and are, as a whole, higher than the table or of the thing's colour. Those of a plate that
+        a thing lies on must have the thing's colour and lie in its line. A long thing goes on
         behind things that stand before it: pixels of its colour on their other side are its own if they lie in its
         line.
 
@@ -226,7 +238,8 @@ class FlatThing:
         least = max(MIN_MEAN_HEIGHT, 3 * float(self._noise[part].mean()) / np.sqrt(count))
         apart = part & ~binary_dilation(seed, AROUND)
         is_alike = apart.sum() >= MIN_APART and self._alike[apart].mean() > 0.5
-        return part if self._height[part].mean() >= least or is_alike else np.zeros_like(seed)
+        is_high = not self._is_carried and self._height[part].mean() >= least
+        return part if is_high or is_alike else np.zeros_like(seed)
 
     def _far_part(self, known: Mask) -> Mask:
         from scipy.ndimage import binary_dilation, binary_propagation
@@ -278,12 +291,13 @@ class FlatThing:
         length, width, _ = self._thing.oriented.extents
         return length >= MIN_SLENDERNESS * width
 
-    def _own_line(self) -> Mask:
+    def _own_line(self, margin: float = 0.0) -> Mask:
         """Return a mask of the pixels at which the thing would be seen if it were longer."""
         if not self._is_slender:
             return np.zeros(self._level.shape, np.bool_)
         across = turned_axes(self._thing.oriented.yaw)[1] @ self._thing.pose[:3, :3].T
-        return self._strip(_corners(self._thing) @ across, across)
+        offsets = _corners(self._thing) @ across
+        return self._strip(np.array([offsets.min() - margin, offsets.max() + margin]), across)
 
     def _line_to(self, thing: Pipeline) -> Mask:
         """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another."""

@@ -677,7 +677,8 @@ class Tracker:
         assert self._reference is not None and self._view is not None
         free = np.flatnonzero(~changes.same & (image.depth > 0))
         points = image.places(free, self._view.back)
-        own = free[thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
+        things, of = self._things_around(free, points, thing.settled_at)
+        own = free[(of == things.index(thing)) & thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
         thing.beneath = self._reference.give(own, thing.slot, image)
         changes.state.ravel()[own] = SAME
 
@@ -767,15 +768,13 @@ class Tracker:
         for thing in self._things:
             if not thing.active:  # what is nearer than a thing, or of another colour, may lie on it
                 owner[(owner == thing.slot) & thing.contains(points, limits.margin)] = ON_ITS_OWNER
+        things, of = self._things_around(free, points, at)
         left = np.ones(len(free), np.bool_)
-        for thing in sorted(self._things, key=lambda each: float(np.prod(each.oriented.extents))):
-            turned = at - thing.settled_at < limits.turned_for
-            inside = left & thing.contains(points, limits.turned_margin if turned else limits.margin)
-            if thing.active:
-                left &= ~inside | (not thing.found)
-                continue
-            own = inside & (owner != ON_ITS_OWNER)
-            reference.give(free[own], thing.slot, image)
+        for number, thing in enumerate(things):
+            own = of == number
+            if not thing.active:
+                own &= owner != ON_ITS_OWNER
+                reference.give(free[own], thing.slot, image)
             left &= ~own
         free = free[left & ~edge]
         untried = int((reference.retry_at.ravel()[free] <= at).sum())
@@ -783,6 +782,49 @@ class Tracker:
             return ()
         self._detected_at = at
         return self._segment(cloud, image, changes, free, at)
+
+    def _things_around(
+        self, pixels: NDArray[np.intp], points: NDArray[np.float64], at: float
+    ) -> tuple[list[Pipeline], NDArray[np.intp]]:
+        """Return the things that were found, and the number of the one that each pixel may show, or -1.
+
+        Of several things whose boxes contain a point, it is the smallest one whose own points are seen there; else the
+        largest one, on which the others lie.
+        """
+        limits = self.settings
+        things = [thing for thing in self._things if thing.found or not thing.active]
+        things.sort(key=lambda thing: float(np.prod(thing.oriented.extents)))
+        if not things:
+            return things, np.full(len(pixels), -1)
+        inside = np.array([thing.contains(points, limits.margin) for thing in things])
+        wide = np.array([
+            thing.contains(points, limits.turned_margin)
+            if at - thing.settled_at < limits.turned_for and not thing.active else np.zeros(len(points), np.bool_)
+            for thing in things
+        ])  # fmt: skip
+        inside = np.where(inside.any(axis=0), inside, wide)
+        of = np.where(inside.any(axis=0), inside.argmax(axis=0), -1)
+        several = np.flatnonzero(inside.sum(axis=0) > 1)
+        if len(several):
+            shown = inside[:, several]
+            largest = len(things) - 1 - shown[::-1].argmax(axis=0)
+            for number in np.flatnonzero(shown.any(axis=1)):
+                shown[number] &= self._footprint(things[number]).ravel()[pixels[several]]
+            of[several] = np.where(shown.any(axis=0), shown.argmax(axis=0), largest)
+        return things, of
+
+    def _footprint(self, thing: Pipeline) -> NDArray[np.bool_]:
+        """Return a mask (r, c) of the pixels at which the points of a thing are seen, and of those around them."""
+        from scipy.ndimage import binary_dilation
+
+        assert self._view is not None
+        mask = np.zeros(self._view.level.shape, np.bool_)
+        seen = (thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3]) @ self._view.matrix.T + self._view.offset
+        column, row = np.rint(seen[:, :2] / np.maximum(seen[:, 2:], 1e-3)).astype(np.int64).T
+        within = (row >= 0) & (column >= 0) & (row < mask.shape[0]) & (column < mask.shape[1])
+        mask[row[within], column[within]] = True
+        around: NDArray[np.bool_] = binary_dilation(mask, np.ones((3, 3)), iterations=2)
+        return around
 
     def _edges(self, pixels: NDArray[np.intp], at: float) -> NDArray[np.bool_]:
         """Return a mask of the pixels in strips of one or two pixels, which edges leave under a camera that moves."""
