@@ -267,20 +267,22 @@ class Pipeline:
         inliers, exposed, inside = self._seen(found.place, found.turn, image, view, taken, noise)
         return found, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
 
-    def likeness(self, tints: NDArray[np.float64]) -> NDArray[np.float64]:
+    def likeness(self, tints: NDArray[np.float64], shade: float = SHADE_SPREAD) -> NDArray[np.float64]:
         """Return how well colours agree with those of the thing.
 
         Parameters
         ----------
         tints
             Colours of shape (k, 3).
+        shade
+            Standard deviation of the lengths of the colours, which change with the light.
 
         Returns
         -------
         ndarray
             Likeness in [0, 1] to the nearest of a few colours of the thing, shape (k,).
         """
-        return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)])
+        return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)], shade)
 
     def seen_at_place(
         self,
@@ -528,7 +530,9 @@ class Pipeline:
         )
 
 
-def likeness(tints: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArray[np.float64]:
+def likeness(
+    tints: NDArray[np.float64], colours: NDArray[np.float64], shade: float = SHADE_SPREAD
+) -> NDArray[np.float64]:
     """Return how well colours agree with the nearest of some others, in the light of any side of a thing.
 
     Parameters
@@ -537,6 +541,8 @@ def likeness(tints: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArra
         Colours of shape (k, 3), from 0 to 255.
     colours
         Colours of shape (m, 3) that they may be.
+    shade
+        Standard deviation of the lengths of the colours, which change with the light.
 
     Returns
     -------
@@ -549,7 +555,7 @@ def likeness(tints: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArra
         own = float(colour @ colour)
         across = other - (tints @ colour) ** 2 / max(own, 1.0)
         along = (np.sqrt(other) - np.sqrt(own)) ** 2
-        least = np.minimum(least, along / SHADE_SPREAD**2 + across / COLOUR_SPREAD**2)
+        least = np.minimum(least, along / shade**2 + across / COLOUR_SPREAD**2)
     found: NDArray[np.float64] = np.exp(-0.5 * least)
     return found
 

@@ -87,6 +87,10 @@ FLAT = 0.002
 ON_ITS_OWNER = -2
 """Mark of a pixel that may show something on the thing that has it in the reference."""
 
+TOGETHER, TOUCHING, ALIKE = 1.0, 0.012, 0.5
+"""Largest time in seconds between the coming of a thing and of a piece of it, their distance in metres, and the least
+mean likeness of their colours in any light."""
+
 FILLED = 0.5
 """Least ratio of the sides of two boxes of one thing."""
 
@@ -136,7 +140,7 @@ class Tracker:
         self._outline, self._hands = Outline(), Hands()
         self._colours = TableColours()
         self._motion: CameraMotion | None = None
-        self._moved_at = self._placed_at = -np.inf
+        self._moved_at = self._placed_at = self._laid_out_at = -np.inf
         self._rests = itertools.count(1)
         self._optics: Optics | None = None
         self._view: TableView | None = None
@@ -287,7 +291,7 @@ class Tracker:
     ) -> tuple[str, ...]:
         """Make a frame the reference, in which the objects of a detection are new things or those that are kept."""
         assert self._view is not None
-        self._last = cloud, image, self._number - 1
+        self._last, self._laid_out_at = (cloud, image, self._number - 1), at
         of = self._shown(found.labels, cloud)
         self._reference = Reference(image, np.full(of.shape, UNKNOWN_OWNER, np.int16), at)
         near = np.abs(image.depth - self._view.level) < np.maximum(
@@ -861,7 +865,8 @@ class Tracker:
         if found is not None:
             first = stride // 2
             of = found.labels.reshape(cloud.organised)[first::stride, first::stride].ravel()[free]
-            for k in range(len(found.boxes)):
+            sizes = np.bincount(of[of >= 0], minlength=len(found.boxes))
+            for k in np.argsort(-sizes, kind="stable").tolist():  # a thing before its pieces
                 own = np.flatnonzero(found.labels == k)
                 pixels = free[of == k]
                 enough = len(pixels) >= self.settings.least_pixels and candidates[own].mean() > 0.5
@@ -871,6 +876,12 @@ class Tracker:
                 there = self._filled(found, k)
                 if there is not None:
                     reference.give(pixels, there.slot, image)
+                    continue
+                whole = self._whole(image, pixels)
+                if whole is not None:
+                    reference.give(pixels, whole.slot, image)
+                    colours = image.colour.reshape(-1, 3)[pixels]
+                    whole.extend(image.places(pixels, self._back), colours, self.settings.detection.outlines)
                     continue
                 again = self._recognised(image, changes, pixels, at)
                 if again is None:
@@ -895,6 +906,22 @@ class Tracker:
             sides = np.sort(thing.oriented.extents)[::-1]
             fills = (FILLED * sides <= np.sort(box.extents)[::-1]).all() and (least <= sides).all()
             if not thing.active and fills and thing.contains(corners, self.settings.turned_margin).all():
+                return thing
+        return None
+
+    def _whole(self, image: FrameImage, pixels: NDArray[np.intp]) -> Pipeline | None:
+        """Return the thing of which pixels show a piece: it came when they did, touches them and has their colour."""
+        from scipy.spatial import cKDTree
+
+        assert self._reference is not None
+        points, tints = image.places(pixels, self._back), image.colour.reshape(-1, 3)[pixels].astype(np.float64)
+        since = float(np.median(self._reference.since.ravel()[pixels]))
+        for thing in self._things:
+            came = thing.first_rest and not thing.active and thing.since > self._laid_out_at
+            if not came or abs(thing.since - since) > TOGETHER or thing.likeness(tints, np.inf).mean() < ALIKE:
+                continue
+            away = cKDTree(thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3]).query(points)[0]
+            if thing.contains(points, self.settings.margin).mean() > 0.9 or away.min() < TOUCHING:
                 return thing
         return None
 
