@@ -128,15 +128,10 @@ def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage
         return False
     aside = AXIS * np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)])
     stem = np.array([(*middle[:2], z) for z in np.arange(0.0, bottom, AXIS_STEP)])
-    seen = (stem[:, None] + aside).reshape(-1, 3) @ view.matrix.T + view.offset
-    column, row = np.rint(seen[:, :2] / np.maximum(seen[:, 2:], 1e-9)).astype(np.int64).T
-    rows, columns = image.depth.shape
-    inside = (row >= 0) & (column >= 0) & (row < rows) & (column < columns) & (seen[:, 2] > 0)
-    if not inside.any():
-        return False
-    depth = image.depth[row[inside], column[inside]]
-    hidden = (depth > 0) & (depth < seen[inside, 2] - MIN_BEFORE)
-    return bool(hidden.mean() >= MIN_HIDDEN)
+    pixels, away = view.pixels((stem[:, None] + aside).reshape(-1, 3))
+    depth = image.depth.ravel()[pixels]
+    hidden = (depth > 0) & (depth < away - MIN_BEFORE)
+    return len(pixels) > 0 and bool(hidden.mean() >= MIN_HIDDEN)
 
 
 class FlatThing:

@@ -1,4 +1,4 @@
-"""Know the colours of a table, by which a flat thing on it is told from the table itself."""
+"""Know the colours of a table, which a flat thing on it does not have."""
 
 from __future__ import annotations
 
@@ -68,4 +68,5 @@ class TableColours:
 
 
 def _bins(colours: NDArray[np.floating]) -> NDArray[np.int64]:
-    return np.clip(colours * (BINS / 256), 0, BINS - 1).astype(np.int64)
+    found: NDArray[np.int64] = np.clip(colours * (BINS / 256), 0, BINS - 1).astype(np.int64)
+    return found

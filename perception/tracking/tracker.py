@@ -630,9 +630,7 @@ class Tracker:
         lost = at - thing.seen_at - seconds if thing.active and not thing.in_hand else 0.0
         return way < limits.jump + MAX_SPEED * max(lost, 0.0) or (fit > 0.7 and visible > 0.5)
 
-    def _is_as_likely_at_rest(
-        self, thing: Pipeline, fit: float, image: FrameImage, same: NDArray[np.bool_]
-    ) -> bool:
+    def _is_as_likely_at_rest(self, thing: Pipeline, fit: float, image: FrameImage, same: NDArray[np.bool_]) -> bool:
         """Return True if a thing agrees as well with a frame where it rested as where it was found."""
         agreement, exposed = self._seen_where_it_rested(thing, image, same)
         return exposed > LEAST_EXPOSED and agreement > fit - MIN_GAIN
@@ -649,9 +647,7 @@ class Tracker:
         self._settle(thing)
         return True
 
-    def _seen_where_it_rested(
-        self, thing: Pipeline, image: FrameImage, same: NDArray[np.bool_]
-    ) -> tuple[float, float]:
+    def _seen_where_it_rested(self, thing: Pipeline, image: FrameImage, same: NDArray[np.bool_]) -> tuple[float, float]:
         assert self._reference is not None and self._view is not None
         taken = same & (self._reference.owner != thing.slot)
         return thing.seen_at_place(image, self._view, taken, self._noise, thing.last_rest)
@@ -823,10 +819,8 @@ class Tracker:
 
         assert self._view is not None
         mask = np.zeros(self._view.level.shape, np.bool_)
-        seen = (thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3]) @ self._view.matrix.T + self._view.offset
-        column, row = np.rint(seen[:, :2] / np.maximum(seen[:, 2:], 1e-3)).astype(np.int64).T
-        within = (row >= 0) & (column >= 0) & (row < mask.shape[0]) & (column < mask.shape[1])
-        mask[row[within], column[within]] = True
+        pixels, _ = self._view.pixels(thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3])
+        mask.ravel()[pixels] = True
         around: NDArray[np.bool_] = binary_dilation(mask, np.ones((3, 3)), iterations=2)
         return around
 

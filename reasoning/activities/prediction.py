@@ -253,8 +253,9 @@ class LayingModel:
         if last is None or not len(left):
             return np.ones(len(left))
         counts = self._follows[last, left]
-        found: NDArray[np.float64] = (counts * len(left) + FOLLOWING) / (counts.sum() + FOLLOWING)
-        return (1 - overdue) * found + overdue * found.max()
+        found = (counts * len(left) + FOLLOWING) / (counts.sum() + FOLLOWING)
+        mixed: NDArray[np.float64] = (1 - overdue) * found + overdue * found.max()
+        return mixed
 
     def _place(self, kind: str, rank: int, laid: Laying) -> tuple[int, NextPlace] | None:
         """Return how often the thing of a kind and a rank from the left was there, and its place."""

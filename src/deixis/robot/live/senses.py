@@ -78,7 +78,7 @@ BRINGING = 5.0
 """Maximum time in seconds between words that announce a thing (*first the plate*) and the thing's coming to rest."""
 
 LATE = 15.0
-"""Time in seconds after that in which a thing may still be found that came to rest in time, such as one behind others."""
+"""Time in seconds after that in which a thing may still be found that came to rest in time but was hidden."""
 
 SPREAD = 0.5
 """Time in seconds by which things that come later, or earlier, than another one are e times less likely the announced
@@ -608,15 +608,14 @@ class _Writer:
         return taught_labels([pointed_label(utterance, tuple(self._pointings), self._things)], self._things)[0]
 
     def _announced_label(self, announced: _Announced) -> PointedLabel:
-        """Return what was announced (*first the plate*) with the thing that came to rest nearest in time, or why none
-        is taught.
+        """Return what was announced with the thing that came to rest nearest in time, or why no thing gets the name.
 
         What came after earlier words, and before the next ones, is left to the earlier words until these have a thing.
         """
         utterance, name = announced.utterance, announced.name
         label = PointedLabel(utterance, name, probability=utterance.confidence)
         earlier = [each.utterance.at for each in self._unmet if each.utterance.at < utterance.at]
-        spans = [(at, min((next for next in self._announcing if next > at), default=math.inf)) for at in earlier]
+        spans = [(at, min((later for later in self._announcing if later > at), default=math.inf)) for at in earlier]
         away = {
             thing: max(utterance.at - at, at - utterance.end, 0.0)
             for thing, at in self._came.items()
