@@ -45,9 +45,12 @@ MIN_SLENDERNESS = 2.0
 MIN_JOINT_SLENDERNESS = 3.0
 """Least ratio of the length to the width of two short ends together, between which something hides the middle."""
 
-CARRIED_MARGIN = 0.01
-"""Distance in metres by which the head of a thing that lies on another one may be wider than the rest, on either side.
-"""
+BESIDE, SLICE = 0.02, 0.006
+"""Width in metres of the strips beside the line of a thing on a plate that show the plate, and the length of the slices
+in which they are compared with what is in the line."""
+
+UNLIKE_BESIDE, MIN_BESIDE = 30.0, 4
+"""Least distance in RGB of a pixel in the line from the plate beside it, and the least number of pixels beside it."""
 
 STRIP_MARGIN = 0.006
 """Distance in metres by which the continuation of a thing may be wider than the thing, on either side."""
@@ -196,7 +199,7 @@ class FlatThing:
         self._line = self._own_line()
         self._hiding = self._line & self._before
         if self._is_carried:
-            self._candidate = table & self._alike & self._own_line(CARRIED_MARGIN)
+            self._alike = self._candidate = table & self._carried_ends(table, depth, shade, like.reshape(tinted.shape))
         else:
             high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
             self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
@@ -281,18 +284,42 @@ class FlatThing:
                 found.append(thing)
         return found
 
+    def _carried_ends(
+        self, carrier: Mask, depth: NDArray[np.float32], shade: NDArray[np.float64], like: NDArray[np.float64]
+    ) -> Mask:
+        """Return a mask of the pixels in the line of a thing on a plate, beyond its ends, that differ from the plate.
+
+        They are compared with the plate beside the line, since the wall of a plate has other shades than its middle.
+        """
+        if not self._is_slender:
+            return np.zeros(carrier.shape, np.bool_)
+        box, pose = self._thing.oriented, self._thing.pose
+        rows, columns = np.indices(carrier.shape) + np.array(self._corner)[:, None, None]
+        rays = np.stack([columns, rows, np.ones(rows.shape)], axis=-1) * depth[..., None]
+        places = (rays - self._view.offset) @ np.linalg.inv(self._view.matrix).T
+        own = ((places - pose[:3, 3]) @ pose[:3, :3] - np.array(box.centre)) @ turned_axes(box.yaw).T
+        along, across = own[..., 0], np.abs(own[..., 1]) - box.extents[1] / 2 - STRIP_MARGIN
+        end = (across < 0) & (np.abs(along) > box.extents[0] / 2 - SLICE) & (like > MIN_LIKENESS) & carrier
+        beside = carrier & (across > 0) & (across < BESIDE)
+        number = np.floor(along / SLICE).astype(np.int64)
+        found = np.zeros(carrier.shape, np.bool_)
+        for each in np.unique(number[end]):
+            plate, here = shade[beside & (number == each)], end & (number == each)
+            if len(plate) >= MIN_BESIDE:
+                found[here] = np.linalg.norm(shade[here] - np.median(plate, axis=0), axis=-1) > UNLIKE_BESIDE
+        return found
+
     @property
     def _is_slender(self) -> bool:
         length, width, _ = self._thing.oriented.extents
         return length >= MIN_SLENDERNESS * width
 
-    def _own_line(self, margin: float = 0.0) -> Mask:
+    def _own_line(self) -> Mask:
         """Return a mask of the pixels at which the thing would be seen if it were longer."""
         if not self._is_slender:
             return np.zeros(self._level.shape, np.bool_)
         across = turned_axes(self._thing.oriented.yaw)[1] @ self._thing.pose[:3, :3].T
-        offsets = _corners(self._thing) @ across
-        return self._strip(np.array([offsets.min() - margin, offsets.max() + margin]), across)
+        return self._strip(_corners(self._thing) @ across, across)
 
     def _line_to(self, thing: Pipeline) -> Mask:
         """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another."""

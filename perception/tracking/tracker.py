@@ -825,8 +825,11 @@ class Tracker:
         return around
 
     def _edges(self, pixels: NDArray[np.intp], at: float) -> NDArray[np.bool_]:
-        """Return a mask of the pixels in strips of one or two pixels, which edges leave under a camera that moves."""
-        from scipy.ndimage import binary_opening
+        """Return a mask of the pixels in strips of one or two pixels beside things, which their edges leave there.
+
+        Edges leave such strips under a camera that moves.
+        """
+        from scipy.ndimage import binary_dilation, binary_opening
 
         assert self._reference is not None
         if at - self._moved_at >= UNSTEADY_FOR:
@@ -834,7 +837,8 @@ class Tracker:
         mask = np.zeros(self._reference.owner.shape, np.bool_)
         mask.ravel()[pixels] = True
         opened: NDArray[np.bool_] = binary_opening(mask, np.ones((3, 3)))
-        return ~opened.ravel()[pixels]
+        beside = binary_dilation(self._reference.owner > TABLE, np.ones((3, 3)), iterations=2)
+        return (~opened & beside).ravel()[pixels]
 
     def _segment(
         self, cloud: PointCloud, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float
