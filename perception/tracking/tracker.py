@@ -75,6 +75,9 @@ nothing hides where it rested, for this comparison."""
 BACK, BACK_AFTER = 0.7, 0.3
 """Agreement from which a thing that is not found is again where it rested, and the time for which it was not found."""
 
+AROUND, MIN_EXPLAINED = 0.03, 0.6
+"""Distance in metres around a thing that is found far away, and its least share of the points that changed there."""
+
 RETRY_AFTER = 1.0
 """Time in seconds after which changed pixels that gave no thing are by themselves a reason to segment again."""
 
@@ -591,7 +594,7 @@ class Tracker:
             if not thing.found:
                 self._carry(thing)
         for thing, found, fit, visible in self._each(follow, moving):
-            if not self._is_certain(thing, found, fit, visible, at, seconds):
+            if not self._is_certain(thing, found, fit, visible, at, seconds, points):
                 if self._is_back(thing, image, same, at):
                     self._claim(thing, image, changes)
                     continue
@@ -620,15 +623,28 @@ class Tracker:
                 thing.lost()
 
     def _is_certain(
-        self, thing: Pipeline, found: Estimate, fit: float, visible: float, at: float, seconds: float
+        self,
+        thing: Pipeline,
+        found: Estimate,
+        fit: float,
+        visible: float,
+        at: float,
+        seconds: float,
+        points: NDArray[np.float64],
     ) -> bool:
-        """Return True if a frame shows a thing where it was found; far from where it was, it must be seen well."""
+        """Return True if a frame shows a thing where it was found.
+
+        Far from where it was, it must be seen well, and be more than a part of what changed there.
+        """
         limits = self.settings
         if fit <= limits.fit or visible <= limits.visible:
             return False
         way = thing.way_from_expected(found.place, seconds)
         lost = at - thing.seen_at - seconds if thing.active and not thing.in_hand else 0.0
-        return way < limits.jump + MAX_SPEED * max(lost, 0.0) or (fit > 0.7 and visible > 0.5)
+        if way < limits.jump + MAX_SPEED * max(lost, 0.0):
+            return True
+        own, around = (thing.contains(points, margin, found.pose).sum() for margin in (limits.margin, AROUND))
+        return bool(fit > 0.7 and visible > 0.5 and own > MIN_EXPLAINED * around)
 
     def _is_as_likely_at_rest(self, thing: Pipeline, fit: float, image: FrameImage, same: NDArray[np.bool_]) -> bool:
         """Return True if a thing agrees as well with a frame where it rested as where it was found."""
