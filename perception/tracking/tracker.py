@@ -68,9 +68,9 @@ EXPOSED = 0.3
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
 
-MIN_GAIN, LEAST_EXPOSED = 0.15, 0.1
-"""Least gain of agreement by which a thing that is mostly hidden has moved, and the least share of its points that
-nothing hides where it rested, for this comparison."""
+MIN_GAIN, LEAST_EXPOSED, SEEN_WELL = 0.15, 0.1, 0.5
+"""Least gain of agreement by which a thing that is mostly hidden has moved, the least share of its points that nothing
+hides where it rested, for this comparison, and the least share that is seen elsewhere without it."""
 
 BACK, BACK_AFTER = 0.7, 0.3
 """Agreement from which a thing that is not found is again where it rested, and the time for which it was not found."""
@@ -615,7 +615,7 @@ class Tracker:
         for thing, found, fit, visible in self._each(follow, doubtful):
             way = float(np.linalg.norm(found.place - thing.pose[:3, 3]))
             moved_there = MIN_WAY < way < limits.jump and fit > 0.6 and visible > limits.visible
-            if moved_there and not self._is_as_likely_at_rest(thing, fit, image, same):
+            if moved_there and not self._is_as_likely_at_rest(thing, fit, visible, image, same):
                 self._start(thing)
                 thing.moved_to(found.pose, at, fit)
             else:
@@ -646,10 +646,15 @@ class Tracker:
         own, around = (thing.contains(points, margin, found.pose).sum() for margin in (limits.margin, AROUND))
         return bool(fit > 0.7 and visible > 0.5 and own > MIN_EXPLAINED * around)
 
-    def _is_as_likely_at_rest(self, thing: Pipeline, fit: float, image: FrameImage, same: NDArray[np.bool_]) -> bool:
-        """Return True if a thing agrees as well with a frame where it rested as where it was found."""
+    def _is_as_likely_at_rest(
+        self, thing: Pipeline, fit: float, visible: float, image: FrameImage, same: NDArray[np.bool_]
+    ) -> bool:
+        """Return True if a thing may as well be where it rested as where it was found.
+
+        It agrees as well with the frame there, or its place is hidden and too little of it is seen where it was found.
+        """
         agreement, exposed = self._seen_where_it_rested(thing, image, same)
-        return exposed > LEAST_EXPOSED and agreement > fit - MIN_GAIN
+        return agreement > fit - MIN_GAIN if exposed > LEAST_EXPOSED else visible < SEEN_WELL
 
     def _is_back(self, thing: Pipeline, image: FrameImage, same: NDArray[np.bool_], at: float) -> bool:
         """Let a thing that was not found rest where it rested before, if the frame shows it there."""
