@@ -90,7 +90,7 @@ FLAT = 0.002
 ON_ITS_OWNER = -2
 """Mark of a pixel that may show something on the thing that has it in the reference."""
 
-TOGETHER, TOUCHING, ALIKE = 1.0, 0.012, 0.5
+TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
 """Largest time in seconds between the coming of a thing and of a piece of it, their distance in metres, and the least
 mean likeness of their colours in any light."""
 
@@ -433,7 +433,7 @@ class Tracker:
                 thing = matches[k]
                 if thing.active or _shared(reference.owner == thing.slot, of == k) < SAME_MODEL:
                     thing = self._remodelled(thing, self._modelled(whole, cloud, points, k, thing.id, thing.slot, at))
-            elif self._outline.is_crossed_by(image.places(pixels, self._back)):
+            elif self._outline.is_crossed_by(image.places(pixels, self._back)) or self._is_piece(image, pixels):
                 continue
             else:
                 came.append(self._enter(whole, cloud, points, k, at))
@@ -859,7 +859,8 @@ class Tracker:
         mask.ravel()[pixels] = True
         opened: NDArray[np.bool_] = binary_opening(mask, np.ones((3, 3)))
         beside = binary_dilation(self._reference.owner > TABLE, np.ones((3, 3)), iterations=2)
-        return (~opened & beside).ravel()[pixels]
+        found: NDArray[np.bool_] = (~opened & beside).ravel()[pixels]
+        return found
 
     def _segment(
         self, cloud: PointCloud, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float
@@ -896,11 +897,7 @@ class Tracker:
                 if there is not None:
                     reference.give(pixels, there.slot, image)
                     continue
-                whole = self._whole(image, pixels)
-                if whole is not None:
-                    reference.give(pixels, whole.slot, image)
-                    colours = image.colour.reshape(-1, 3)[pixels]
-                    whole.extend(image.places(pixels, self._back), colours, self.settings.detection.outlines)
+                if self._is_piece(image, pixels):
                     continue
                 again = self._recognised(image, changes, pixels, at)
                 if again is None:
@@ -928,8 +925,8 @@ class Tracker:
                 return thing
         return None
 
-    def _whole(self, image: FrameImage, pixels: NDArray[np.intp]) -> Pipeline | None:
-        """Return the thing of which pixels show a piece: it came when they did, touches them and has their colour."""
+    def _is_piece(self, image: FrameImage, pixels: NDArray[np.intp]) -> bool:
+        """Add pixels to the thing of which they show a piece: it came when they did, touches them and has their hue."""
         from scipy.spatial import cKDTree
 
         assert self._reference is not None
@@ -941,8 +938,10 @@ class Tracker:
                 continue
             away = cKDTree(thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3]).query(points)[0]
             if thing.contains(points, self.settings.margin).mean() > 0.9 or away.min() < TOUCHING:
-                return thing
-        return None
+                self._reference.give(pixels, thing.slot, image)
+                thing.extend(points, tints.astype(np.float32), self.settings.detection.outlines)
+                return True
+        return False
 
     def _recognised(self, image: FrameImage, changes: Changes, pixels: NDArray[np.intp], at: float) -> Pipeline | None:
         """Return the lost thing that pixels show, put there; None if they show a new thing."""

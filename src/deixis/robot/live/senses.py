@@ -610,11 +610,13 @@ class _Writer:
     def _announced_label(self, announced: _Announced) -> PointedLabel:
         """Return what was announced with the thing that came to rest nearest in time, or why no thing gets the name.
 
-        What came after earlier words, and before the next ones, is left to the earlier words until these have a thing.
+        What came between earlier words and the next ones is left to the earlier words, unless the person says what she
+        has just laid.
         """
         utterance, name = announced.utterance, announced.name
         label = PointedLabel(utterance, name, probability=utterance.confidence)
-        earlier = [each.utterance.at for each in self._unmet if each.utterance.at < utterance.at]
+        ahead = [each for thing, each in self._announced.items() if self._came[thing] >= each.utterance.at]
+        earlier = [each.utterance.at for each in (*self._unmet, *ahead) if each.utterance.at < utterance.at]
         spans = [(at, min((later for later in self._announcing if later > at), default=math.inf)) for at in earlier]
         away = {
             thing: max(utterance.at - at, at - utterance.end, 0.0)
