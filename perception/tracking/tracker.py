@@ -303,7 +303,7 @@ class Tracker:
         plan = moved(image.points.reshape(-1, 3), self._view.back)
         beyond = self._outline.beyond(plan[:, :2]).reshape(of.shape) & (image.depth > 0)
         self._colours.extend(image.colour[(of < 0) & near & (image.depth > 0)])
-        self._reference.give(np.flatnonzero((of < 0) & (near & self._is_table_coloured(image) | beyond)), TABLE, image)
+        self._reference.give(np.flatnonzero((of < 0) & (near | beyond)), TABLE, image)
         came = []
         for k in range(len(found.boxes)):
             own = np.flatnonzero(of == k)
