@@ -49,9 +49,6 @@ BESIDE, SLICE = 0.02, 0.006
 """Width in metres of the strips beside the line of a thing on a plate that show the plate, and the length of the slices
 in which they are compared with what is in the line."""
 
-MAX_TABLE_AROUND = 0.1
-"""Largest share of the table among the pixels around a thing that lies on another one."""
-
 UNLIKE_BESIDE, MIN_BESIDE = 30.0, 4
 """Least distance in RGB of a pixel in the line from the plate beside it, and the least number of pixels beside it."""
 
@@ -180,8 +177,7 @@ class FlatThing:
         shade = reference.colour[self._window].astype(np.float64)
         around = binary_dilation(self._seed, AROUND, iterations=3) & ~self._seed
         owners, counts = np.unique(self._owner[around & (self._owner != UNKNOWN_OWNER)], return_counts=True)
-        on_table = not len(owners) or counts[owners == TABLE].sum() > MAX_TABLE_AROUND * counts.sum()
-        carrier = TABLE if on_table else int(owners[counts.argmax()])
+        carrier = int(owners[counts.argmax()]) if len(owners) else TABLE
         self._is_carried = carrier != TABLE
         table = (self._owner == carrier) & (depth > 0) & np.isfinite(level)
         bare = table & ~binary_dilation(self._seed, iterations=3)
