@@ -24,7 +24,7 @@ from deixis.examples_data import example
 from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.run import LiveRobot, live_robot
-from deixis.robot.live.senses import AT, VIEW_ENDING
+from deixis.robot.live.senses import AT, TABLE, VIEW_ENDING
 from deixis.robot.live.story import StorySettings, StoryTruth
 
 NEAR = 0.06
@@ -33,9 +33,9 @@ NEAR = 0.06
 
 def matched(robot: LiveRobot, truth: StoryTruth) -> tuple[dict[str, str], int]:
     """Return the tracked thing of each true one by its name, and the number of other tracked things."""
-    views = sorted(robot.folder.glob(f"*{VIEW_ENDING}"), key=lambda file: file.stat().st_mtime)
-    with np.load(views[-1]) as view:
-        onto = truth.camera.pose @ np.linalg.inv(view["frame"])
+    (table,) = robot.board.now(Pattern(predicate=TABLE))
+    with np.load(Path(str(table.statement.object)).with_suffix("").with_suffix(VIEW_ENDING)) as view:
+        onto = truth.camera_at(table.start.lower - robot.began).pose @ np.linalg.inv(view["frame"])
     found: dict[str, str] = {}
     false = 0
     for each in robot.board.now(Pattern(predicate=AT)):

@@ -490,6 +490,9 @@ class JoiningSettings(_Thresholds):
     min_cutlery_slenderness: float = 3.0
     """Minimum ratio of length to width of two parts of cutlery together. If halved, mosd 44 has one part fewer; if
     doubled, mosd 34 has one more."""
+    max_cutlery_length: float = 0.3
+    """Metres. Two parts that are longer together are two pieces of cutlery in one line. Tested by
+    test_two_forks_in_a_line_are_not_one_piece."""
     max_cutlery_width: float = 0.045
     """Metres between the middles of patches at either side: the bowl of a spoon is not wider. If halved, simulated
     settings 5 and 11 have one part more each; see test_the_head_of_a_spoon_joins_its_handle."""

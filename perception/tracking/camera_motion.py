@@ -8,7 +8,8 @@ corrects height and tilt of each new keyframe.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,9 @@ MIN_CLOSE, MIN_ALIKE = 0.5, 0.4
 
 SURE = 0.6
 """Agreement from which no other start is tried."""
+
+LOST_AFTER, ASIDE = 0.25, 0.03
+"""Time in seconds without a pose after which poses beside the last one are tried, and their distance in metres."""
 
 MIN_POINTS = 150
 """Least number of points in view that are compared."""
@@ -128,10 +132,11 @@ class CameraMotion:
         found: Registration | None = None
         nearest = min(self._keyframes, key=lambda key: _way(key.pose, ahead), default=None)
         landmarks = None if nearest is None else nearest.standing(rests)
-        for start in (ahead, self.pose):
+        lost = seconds > LOST_AFTER
+        for start in (ahead, self.pose, *(self._aside() if lost else ())):
             if landmarks is None or (found is not None and found.agreement > SURE):
                 break
-            tried = register(landmarks, levels, start, noise)
+            tried = register(landmarks, levels, start, noise, max(seconds / LOST_AFTER, 1.0))
             good = tried.points >= MIN_POINTS and tried.close >= MIN_CLOSE and tried.alike >= MIN_ALIKE
             if good and (found is None or tried.agreement > found.agreement):
                 found = tried
@@ -140,6 +145,14 @@ class CameraMotion:
                 self._velocity = _displacement(self.pose, found.pose) / seconds
             self.pose, self._at = found.pose, at
         return found, levels
+
+    def _aside(self) -> Iterator[NDArray[np.float64]]:
+        """Yield poses beside the last one, in the directions of the rows and columns of the image."""
+        for across, down in itertools.product((-ASIDE, 0.0, ASIDE), repeat=2):
+            if across or down:
+                pose = self.pose.copy()
+                pose[:3, 3] += pose[:3, :3] @ np.array([across, down, 0.0])
+                yield pose
 
     def needs_keyframe(self) -> bool:
         """Return True if the pose is far from those of all keyframes.

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.scene import turned_axes
-from deixis.perception.tracking.image import TableView
+from deixis.perception.tracking.image import FrameImage, TableView
 from deixis.perception.tracking.pipeline import Pipeline, likeness
 from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Reference
 
@@ -42,6 +42,16 @@ MIN_LIKENESS = 0.05
 MIN_SLENDERNESS = 2.0
 """Least ratio of the length to the width of a thing that is continued behind others."""
 
+MIN_JOINT_SLENDERNESS = 3.0
+"""Least ratio of the length to the width of two short ends together, between which something hides the middle."""
+
+BESIDE, SLICE = 0.02, 0.006
+"""Width in metres of the strips beside the line of a thing on a plate that show the plate, and the length of the slices
+in which they are compared with what is in the line."""
+
+UNLIKE_BESIDE, MIN_BESIDE = 30.0, 4
+"""Least distance in RGB of a pixel in the line from the plate beside it, and the least number of pixels beside it."""
+
 STRIP_MARGIN = 0.006
 """Distance in metres by which the continuation of a thing may be wider than the thing, on either side."""
 
@@ -50,6 +60,18 @@ MIN_IN_LINE = 0.6
 
 MAX_PIECE, MAX_LENGTH = 0.8, 0.28
 """Largest number of pixels of a piece, as a share of those of the thing, and length in metres of both together."""
+
+MIN_LIFTED, SUPPORT = 0.025, 0.03
+"""Height in metres from which a thing seems to float, and the depth below it in which the top of its support is."""
+
+MIN_BEFORE = 0.01
+"""Distance in metres by which a surface must be nearer than a place that it hides."""
+
+AXIS, AXIS_STEP = 0.008, 0.005
+"""Radius of the hidden stem below a thing, and the distance of the heights at which it is looked for, in metres."""
+
+MIN_HIDDEN = 0.8
+"""Least share of the places of the stem that something hides, for the thing to stand on it."""
 
 BEYOND = 0.005
 """Distance in metres from the box of a thing beyond which a point shows a part of it that was not seen before."""
@@ -82,8 +104,41 @@ def revealed_part(thing: Pipeline, reference: Reference, view: TableView) -> NDA
     return new if len(new) >= MIN_PART else new[:0]
 
 
+def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage, view: TableView) -> bool:
+    """Return True if a thing that seems to float stands on the table, with its foot behind something.
+
+    Parameters
+    ----------
+    thing
+        Thing at rest.
+    others
+        The other things at rest.
+    image, view
+        The frame, and its view of the table.
+
+    Returns
+    -------
+    bool
+        False for a thing that reaches down to the table or lies on another one, and where the frame shows what is
+        below it.
+    """
+    corners = _corners(thing)
+    middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
+    if bottom < MIN_LIFTED:
+        return False
+    below = np.array([(*middle[:2], z) for z in np.arange(bottom, bottom - SUPPORT, -AXIS_STEP)])
+    if any(other is not thing and other.contains(below, 0.0).any() for other in others):
+        return False
+    aside = AXIS * np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)])
+    stem = np.array([(*middle[:2], z) for z in np.arange(0.0, bottom, AXIS_STEP)])
+    pixels, away = view.pixels((stem[:, None] + aside).reshape(-1, 3))
+    depth = image.depth.ravel()[pixels]
+    hidden = (depth > 0) & (depth < away - MIN_BEFORE)
+    return len(pixels) > 0 and bool(hidden.mean() >= MIN_HIDDEN)
+
+
 class FlatThing:
-    """Flat thing at rest, with the table and the other things around it.
+    """Flat thing at rest, with the table, or the thing that it lies on, and the other things around it.
 
     Parameters
     ----------
@@ -120,7 +175,11 @@ class FlatThing:
         self._seed, self._owner = own[self._window], reference.owner[self._window]
         depth, level = reference.depth[self._window], view.level[self._window]
         shade = reference.colour[self._window].astype(np.float64)
-        table = (self._owner == TABLE) & (depth > 0) & np.isfinite(level)
+        around = binary_dilation(self._seed, AROUND, iterations=3) & ~self._seed
+        owners, counts = np.unique(self._owner[around & (self._owner != UNKNOWN_OWNER)], return_counts=True)
+        carrier = int(owners[counts.argmax()]) if len(owners) else TABLE
+        self._is_carried = carrier != TABLE
+        table = (self._owner == carrier) & (depth > 0) & np.isfinite(level)
         bare = table & ~binary_dilation(self._seed, iterations=3)
         if bare.sum() < MIN_TABLE_PIXELS:
             self.is_seen = False
@@ -134,17 +193,23 @@ class FlatThing:
         like = thing.likeness(every)
         alike = (like > MIN_LIKENESS) & (like > likeness(every, ground[None]))
         self._alike = tinted & alike.reshape(tinted.shape)
-        high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
-        self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
-        self._others = (self._owner != TABLE) & (self._owner != UNKNOWN_OWNER) & ~self._seed
-        self._line = self._line_in(view, eye, level)
-        self._hiding = self._line & ((self._others & (depth < level)) | (self._owner == UNKNOWN_OWNER))
+        self._others = ~np.isin(self._owner, (TABLE, carrier, UNKNOWN_OWNER)) & ~self._seed
+        self._view, self._eye, self._level = view, eye, level
+        self._before = (self._others & (depth < level)) | (self._owner == UNKNOWN_OWNER)
+        self._line = self._own_line()
+        self._hiding = self._line & self._before
+        if self._is_carried:
+            self._alike = self._candidate = table & self._carried_ends(table, depth, shade, like.reshape(tinted.shape))
+        else:
+            high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
+            self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
 
     def missing_part(self) -> NDArray[np.intp]:
-        """Return the pixels of the table that are parts of the thing.
+        """Return the pixels of the table, or of what the thing lies on, that are parts of the thing.
 
         Pixels that are higher than the rest of the noise, or of another colour than the table, are the thing's if they
-        are connected with it and are, as a whole, higher than the table or of the thing's colour. A long thing goes on
+        are connected with it and are, as a whole, higher than the table or of the thing's colour. Those of a plate that
+        a thing lies on must have the thing's colour and lie in its line. A long thing goes on
         behind things that stand before it: pixels of its colour on their other side are its own if they lie in its
         line.
 
@@ -171,7 +236,8 @@ class FlatThing:
         least = max(MIN_MEAN_HEIGHT, 3 * float(self._noise[part].mean()) / np.sqrt(count))
         apart = part & ~binary_dilation(seed, AROUND)
         is_alike = apart.sum() >= MIN_APART and self._alike[apart].mean() > 0.5
-        return part if self._height[part].mean() >= least or is_alike else np.zeros_like(seed)
+        is_high = not self._is_carried and self._height[part].mean() >= least
+        return part if is_high or is_alike else np.zeros_like(seed)
 
     def _far_part(self, known: Mask) -> Mask:
         from scipy.ndimage import binary_dilation, binary_propagation
@@ -198,14 +264,18 @@ class FlatThing:
 
         if not self.is_seen:
             return []
-        reached = binary_propagation(self._seed, AROUND, self._seed | self._hiding | (self._line & self._others))
-        reached = binary_dilation(reached & (self._seed | self._hiding), AROUND, iterations=2)
         found = []
         for thing in things:
             own = self._owner == thing.slot
             together = thing.at == self._thing.at and thing.first_rest and self._thing.first_rest
             fits = together and 0 < own.sum() <= MAX_PIECE * self._seed.sum() and thing.oriented.extents[2] < FLAT
-            if not fits or not (reached & own).any() or (self._line & self._alike)[own].mean() < MIN_IN_LINE:
+            if not fits:
+                continue
+            line = self._line if self._is_slender else self._line_to(thing)
+            hiding = line & self._before
+            reached = binary_propagation(self._seed, AROUND, self._seed | hiding | (line & self._others))
+            reached = binary_dilation(reached & (self._seed | hiding), AROUND, iterations=2)
+            if not (reached & own).any() or (line & self._alike)[own].mean() < MIN_IN_LINE:
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
             other = np.array(thing.oriented.centre) + thing.pose[:3, 3]
@@ -214,16 +284,68 @@ class FlatThing:
                 found.append(thing)
         return found
 
-    def _line_in(self, view: TableView, eye: float, level: NDArray[np.float32]) -> Mask:
-        """Return a mask of the pixels at which the thing would be seen if it were longer."""
-        length, width, height = self._thing.oriented.extents
-        if length < MIN_SLENDERNESS * width:
-            return np.zeros(level.shape, np.bool_)
-        rows, columns = np.indices(level.shape) + np.array(self._corner)[:, None, None]
-        depth = np.where(np.isfinite(level), level, 0.0) * (1 - height / 2 / eye)
+    def _carried_ends(
+        self, carrier: Mask, depth: NDArray[np.float32], shade: NDArray[np.float64], like: NDArray[np.float64]
+    ) -> Mask:
+        """Return a mask of the pixels in the line of a thing on a plate, beyond its ends, that differ from the plate.
+
+        They are compared with the plate beside the line, since the wall of a plate has other shades than its middle.
+        """
+        if not self._is_slender:
+            return np.zeros(carrier.shape, np.bool_)
+        box, pose = self._thing.oriented, self._thing.pose
+        rows, columns = np.indices(carrier.shape) + np.array(self._corner)[:, None, None]
         rays = np.stack([columns, rows, np.ones(rows.shape)], axis=-1) * depth[..., None]
-        places = (rays - view.offset) @ np.linalg.inv(view.matrix).T
-        pose, box = self._thing.pose, self._thing.oriented
-        across = ((places - pose[:3, 3]) @ pose[:3, :3] - np.array(box.centre)) @ turned_axes(box.yaw)[1]
-        line: Mask = (depth > 0) & (np.abs(across) < width / 2 + STRIP_MARGIN)
+        places = (rays - self._view.offset) @ np.linalg.inv(self._view.matrix).T
+        own = ((places - pose[:3, 3]) @ pose[:3, :3] - np.array(box.centre)) @ turned_axes(box.yaw).T
+        along, across = own[..., 0], np.abs(own[..., 1]) - box.extents[1] / 2 - STRIP_MARGIN
+        end = (across < 0) & (np.abs(along) > box.extents[0] / 2 - SLICE) & (like > MIN_LIKENESS) & carrier
+        beside = carrier & (across > 0) & (across < BESIDE)
+        number = np.floor(along / SLICE).astype(np.int64)
+        found = np.zeros(carrier.shape, np.bool_)
+        for each in np.unique(number[end]):
+            plate, here = shade[beside & (number == each)], end & (number == each)
+            if len(plate) >= MIN_BESIDE:
+                found[here] = np.linalg.norm(shade[here] - np.median(plate, axis=0), axis=-1) > UNLIKE_BESIDE
+        return found
+
+    @property
+    def _is_slender(self) -> bool:
+        length, width, _ = self._thing.oriented.extents
+        return length >= MIN_SLENDERNESS * width
+
+    def _own_line(self) -> Mask:
+        """Return a mask of the pixels at which the thing would be seen if it were longer."""
+        if not self._is_slender:
+            return np.zeros(self._level.shape, np.bool_)
+        across = turned_axes(self._thing.oriented.yaw)[1] @ self._thing.pose[:3, :3].T
+        return self._strip(_corners(self._thing) @ across, across)
+
+    def _line_to(self, thing: Pipeline) -> Mask:
+        """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another."""
+        ends = [_corners(each) for each in (self._thing, thing)]
+        along = ends[1].mean(axis=0) - ends[0].mean(axis=0)
+        along[2] = 0.0
+        along /= max(float(np.linalg.norm(along)), 1e-9)
+        across, both = np.array([-along[1], along[0], 0.0]), np.concatenate(ends)
+        if np.ptp(both @ along) < MIN_JOINT_SLENDERNESS * np.ptp(both @ across):
+            return np.zeros(self._level.shape, np.bool_)
+        return self._strip(both @ across, across)
+
+    def _strip(self, offsets: NDArray[np.float64], across: NDArray[np.float64]) -> Mask:
+        """Return a mask of the pixels that show places between the least and the greatest offset in a direction."""
+        rows, columns = np.indices(self._level.shape) + np.array(self._corner)[:, None, None]
+        height = self._thing.oriented.extents[2]
+        depth = np.where(np.isfinite(self._level), self._level, 0.0) * (1 - height / 2 / self._eye)
+        rays = np.stack([columns, rows, np.ones(rows.shape)], axis=-1) * depth[..., None]
+        at = (rays - self._view.offset) @ np.linalg.inv(self._view.matrix).T @ across
+        line: Mask = (depth > 0) & (at > offsets.min() - STRIP_MARGIN) & (at < offsets.max() + STRIP_MARGIN)
         return line
+
+
+def _corners(thing: Pipeline) -> NDArray[np.float64]:
+    """Return the corners (8, 3) of the turned box of a thing, in the table's frame."""
+    box, signs = thing.oriented, np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    own = signs * box.extents @ turned_axes(box.yaw) + box.centre
+    corners: NDArray[np.float64] = own @ thing.pose[:3, :3].T + thing.pose[:3, 3]
+    return corners

@@ -183,6 +183,26 @@ class TableView:
         rows, columns = self.level.shape
         return bool(depth > 0 and 0 <= row < rows * depth and 0 <= column < columns * depth)
 
+    def pixels(self, places: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Return the pixels at which places are seen, also those that something hides.
+
+        Parameters
+        ----------
+        places
+            Places of shape (n, 3) in the table's frame, in metres.
+
+        Returns
+        -------
+        tuple
+            Flat indices and depths, each of shape (k,), of those of the places that are within the image.
+        """
+        seen = places @ self.matrix.T + self.offset
+        depth = seen[:, 2]
+        column, row = np.rint(seen[:, :2] / np.maximum(seen[:, 2:], 1e-9)).clip(-1, 1e6).astype(np.int64).T
+        rows, columns = self.level.shape
+        within = (depth > 0) & (row >= 0) & (column >= 0) & (row < rows) & (column < columns)
+        return np.asarray(row[within] * columns + column[within]), np.asarray(depth[within])
+
 
 def table_view(optics: Optics, back: NDArray[np.float64], shape: tuple[int, int]) -> TableView:
     """Return the view of a table by a camera.

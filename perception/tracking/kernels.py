@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-SAME, NEARER, FARTHER, COLOUR, MISSING, UNKNOWN = 0, 1, 2, 3, 4, 5
+SAME, NEARER, FARTHER, COLOUR, MISSING, UNKNOWN, EDGE = 0, 1, 2, 3, 4, 5, 6
 """States of a pixel: as in the reference, something nearer, something farther, another colour at the same depth, no
-measurement, and a pixel without a reference."""
+measurement, and a pixel without a reference. In counts, ``EDGE`` is a pixel that is as one of another owner beside it,
+under a camera that moves; its own state is ``SAME``."""
 
-STATES = 6
+STATES = 7
 
 FOLLOWING = np.float32(0.3)
 """Share of a new measurement in the last depth of a pixel, under a camera that moves."""
@@ -29,25 +30,30 @@ def depths(points, row, offset):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def compared(depth, colour, reference, shade, labels, level, count, tolerance, noise, least_colour, reach):  # type: ignore[no-untyped-def]
+def compared(  # type: ignore[no-untyped-def]
+    depth, colour, reference, shade, labels, level, count, tolerance, noise, least_colour, reach, bins
+):
     """Return the state of each pixel (r, c), and how many pixels of each label are in each state.
 
-    Pixels without a reference that show the table (depths ``level``) get the reference of the table. ``reach`` is the
-    distance in pixels within which an equal depth of the reference is looked for.
+    Pixels without a reference that show the table (depths ``level``, colours in ``bins``) get the reference of the
+    table. ``reach`` is the distance in pixels within which an equal depth of the reference is looked for.
     """
     rows, columns = depth.shape
     state = np.empty((rows, columns), np.uint8)
     counts = np.zeros((count + 1, STATES), np.int64)
     square = least_colour * least_colour
+    step = len(bins) / np.float32(256)
     for i in range(rows):
         for j in range(columns):
             z, label = depth[i, j], labels[i, j]
+            beside = False
             near = max(tolerance, noise * z * z)
             if z <= 0:
                 found = MISSING
             elif reference[i, j] <= 0:
                 found = UNKNOWN
-                if abs(z - level[i, j]) < near:
+                r, g, b = int(colour[i, j, 0] * step), int(colour[i, j, 1] * step), int(colour[i, j, 2] * step)
+                if abs(z - level[i, j]) < near and bins[r, g, b]:
                     reference[i, j], labels[i, j], label = level[i, j], 0, 0
                     for k in range(3):
                         shade[i, j, k] = colour[i, j, k]
@@ -55,15 +61,16 @@ def compared(depth, colour, reference, shade, labels, level, count, tolerance, n
             else:
                 found = _state(z, colour[i, j], reference[i, j], shade[i, j], near, square)
                 if found != SAME and reach > 0:
+                    beside = True
                     for m in range(max(i - reach, 0), min(i + reach + 1, rows)):
                         for n in range(max(j - reach, 0), min(j + reach + 1, columns)):
-                            if found == SAME or reference[m, n] <= 0:
+                            if not beside or reference[m, n] <= 0 or (found == SAME and labels[m, n] != label):
                                 continue
                             if _state(z, colour[i, j], reference[m, n], shade[m, n], near, square) == SAME:
-                                found = SAME
+                                found, beside = SAME, labels[m, n] != label
             state[i, j] = found
             if label >= 0:
-                counts[label, found] += 1
+                counts[label, EDGE if found == SAME and beside else found] += 1
     return state, counts
 
 
@@ -81,7 +88,7 @@ def _state(z, colour, reference, shade, near, square):  # type: ignore[no-untype
 
 @njit(cache=True, nogil=True)
 def remembered(  # type: ignore[no-untyped-def]
-    state, depth, colour, reference, shade, offset, last, aside, since, at, tolerance, noise, rate
+    state, depth, colour, reference, shade, offset, last, aside, since, at, tolerance, noise, least_colour, rate
 ):
     """Move the reference of unchanged pixels towards what is measured, and note since when each depth is steady.
 
@@ -89,13 +96,15 @@ def remembered(  # type: ignore[no-untyped-def]
     the middles of their pixels.
     """
     rows, columns = depth.shape
+    square = least_colour * least_colour
     for i in range(rows):
         for j in range(columns):
             z = depth[i, j]
             if z <= 0:
                 continue
             near = max(tolerance, noise * z * z)
-            if state[i, j] == SAME and abs(z - reference[i, j]) < near:
+            same = state[i, j] == SAME and reference[i, j] > 0
+            if same and _state(z, colour[i, j], reference[i, j], shade[i, j], near, square) == SAME:
                 reference[i, j] += rate * (z - reference[i, j])
                 for k in range(3):
                     shade[i, j, k] += rate * (colour[i, j, k] - shade[i, j, k])

@@ -267,25 +267,32 @@ class Pipeline:
         inliers, exposed, inside = self._seen(found.place, found.turn, image, view, taken, noise)
         return found, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
 
-    def likeness(self, tints: NDArray[np.float64]) -> NDArray[np.float64]:
+    def likeness(self, tints: NDArray[np.float64], shade: float = SHADE_SPREAD) -> NDArray[np.float64]:
         """Return how well colours agree with those of the thing.
 
         Parameters
         ----------
         tints
             Colours of shape (k, 3).
+        shade
+            Standard deviation of the lengths of the colours, which change with the light.
 
         Returns
         -------
         ndarray
             Likeness in [0, 1] to the nearest of a few colours of the thing, shape (k,).
         """
-        return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)])
+        return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)], shade)
 
     def seen_at_place(
-        self, image: FrameImage, view: TableView, taken: NDArray[np.bool_], noise: float
+        self,
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        noise: float,
+        pose: NDArray[np.float64] | None = None,
     ) -> tuple[float, float]:
-        """Compare a frame with the thing in its present pose.
+        """Compare a frame with the thing in a pose.
 
         Parameters
         ----------
@@ -295,13 +302,16 @@ class Pipeline:
             Mask (r, c) of the pixels that belong to something else.
         noise
             Standard deviation of depths at one metre.
+        pose
+            The pose; by default the present one.
 
         Returns
         -------
         tuple
             Share of the points that agree, of those that nothing hides; and the share of points that nothing hides.
         """
-        inliers, exposed, _ = self._seen(self.pose[:3, 3], _quaternion(self.pose), image, view, taken, noise)
+        at = self.pose if pose is None else pose
+        inliers, exposed, _ = self._seen(at[:3, 3], _quaternion(at), image, view, taken, noise)
         return inliers / max(exposed, 1.0), exposed / len(self._points)
 
     def _seen(
@@ -368,6 +378,21 @@ class Pipeline:
         )
         self.pose = self.pose.copy()
         self.pose[:3, 3] = middle
+        self._rest = self.pose
+        self._choose_points()
+        self._filter.reset(self.pose)
+
+    def stand(self) -> None:
+        """Extend the box of the thing down to the table, on which it stands with a hidden foot."""
+        top = float(self.pose[2, 3] + self.oriented.centre[2] + self.oriented.extents[2] / 2)
+        x, y, _ = self.oriented.centre
+        points = self.cloud.points.copy()
+        points[:, 2] += np.float32(self.pose[2, 3] - top / 2)
+        self.cloud = PointCloud(points, self.cloud.colours)
+        self.half = np.array([*self.half[:2], top / 2])
+        self.oriented = OrientedBox((x, y, 0.0), self.oriented.yaw, (*self.oriented.extents[:2], top))
+        self.pose = self.pose.copy()
+        self.pose[2, 3] = top / 2
         self._rest = self.pose
         self._choose_points()
         self._filter.reset(self.pose)
@@ -505,7 +530,9 @@ class Pipeline:
         )
 
 
-def likeness(tints: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArray[np.float64]:
+def likeness(
+    tints: NDArray[np.float64], colours: NDArray[np.float64], shade: float = SHADE_SPREAD
+) -> NDArray[np.float64]:
     """Return how well colours agree with the nearest of some others, in the light of any side of a thing.
 
     Parameters
@@ -514,6 +541,8 @@ def likeness(tints: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArra
         Colours of shape (k, 3), from 0 to 255.
     colours
         Colours of shape (m, 3) that they may be.
+    shade
+        Standard deviation of the lengths of the colours, which change with the light.
 
     Returns
     -------
@@ -526,7 +555,7 @@ def likeness(tints: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArra
         own = float(colour @ colour)
         across = other - (tints @ colour) ** 2 / max(own, 1.0)
         along = (np.sqrt(other) - np.sqrt(own)) ** 2
-        least = np.minimum(least, along / SHADE_SPREAD**2 + across / COLOUR_SPREAD**2)
+        least = np.minimum(least, along / shade**2 + across / COLOUR_SPREAD**2)
     found: NDArray[np.float64] = np.exp(-0.5 * least)
     return found
 

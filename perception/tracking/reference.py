@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.tracking.image import FrameImage, TableView
 from deixis.perception.tracking.pipeline import Beneath
+from deixis.perception.tracking.table_colours import TableColours
 
 TABLE, UNKNOWN_OWNER = 0, -1
 """Owners of pixels: the table and all beyond it, and nothing that is known. Things have their slots, from 1."""
@@ -56,6 +57,8 @@ class Reference:
         """Time in seconds since which each depth is steady."""
         self.retry_at = np.full(owner.shape, -np.inf)
         """Time in seconds from which each pixel is a reason to segment what changed."""
+        self.tries = np.zeros(owner.shape, np.uint8)
+        """Number of times that each pixel was segmented and showed no thing, since its depth was last given."""
         self._offset = np.zeros((*owner.shape, 2), np.float32)
         self._last = image.depth.copy()
         self._aside = np.zeros((*owner.shape, 2), np.float32)
@@ -87,6 +90,7 @@ class Reference:
         source, self._last, self._aside = carried(self._last, self._aside, np.zeros_like(self.owner), turn, shift, gap)
         self.since = np.where(source >= 0, self.since.ravel()[source], np.inf)
         self.retry_at = np.where(source >= 0, self.retry_at.ravel()[source], -np.inf)
+        self.tries = np.where(source >= 0, self.tries.ravel()[source], np.uint8(0))
 
     def compared(
         self,
@@ -97,6 +101,7 @@ class Reference:
         noise: float,
         colour: float,
         reach: int,
+        table: TableColours,
     ) -> Changes:
         """Compare a frame with the reference.
 
@@ -114,6 +119,8 @@ class Reference:
             Least difference of two colours.
         reach
             Distance in pixels within which an equal depth of the reference is looked for.
+        table
+            Colours that a pixel without a reference must have to be the table's.
 
         Returns
         -------
@@ -124,11 +131,13 @@ class Reference:
 
         state, counts = compared(
             image.depth, image.colour, self.depth, self.colour, self.owner, level, labels, tolerance, noise, colour,
-            reach,
+            reach, table.bins,
         )  # fmt: skip
         return Changes(state, counts)
 
-    def remember(self, image: FrameImage, changes: Changes, at: float, tolerance: float, noise: float) -> None:
+    def remember(
+        self, image: FrameImage, changes: Changes, at: float, tolerance: float, noise: float, colour: float
+    ) -> None:
         """Move the reference of unchanged pixels towards a frame, and note which depths are not steady.
 
         Parameters
@@ -137,14 +146,14 @@ class Reference:
             The frame, and its comparison with the reference.
         at
             Its time in seconds.
-        tolerance, noise
+        tolerance, noise, colour
             As in :meth:`compared`.
         """
         from deixis.perception.tracking.kernels import remembered
 
         remembered(
             changes.state, image.depth, image.colour, self.depth, self.colour, self._offset, self._last, self._aside,
-            self.since, at, tolerance, noise, np.float32(LEARNING_RATE),
+            self.since, at, tolerance, noise, colour, np.float32(LEARNING_RATE),
         )  # fmt: skip
 
     def points(self, pixels: NDArray[np.intp], view: TableView) -> NDArray[np.float64]:
@@ -195,6 +204,7 @@ class Reference:
         self.colour.reshape(-1, 3)[pixels] = image.colour.reshape(-1, 3)[pixels]
         self.owner.ravel()[pixels] = owner
         self._offset.reshape(-1, 2)[pixels] = 0
+        self.tries.ravel()[pixels] = 0
         return before
 
     def take(self, owner: int, beneath: Beneath | None, owners: set[int]) -> None:

@@ -227,7 +227,9 @@ class Registration:
         return self.close * self.alike
 
 
-def register(landmarks: Landmarks, levels: Levels, start: NDArray[np.float64], noise: float) -> Registration:
+def register(
+    landmarks: Landmarks, levels: Levels, start: NDArray[np.float64], noise: float, doubt: float = 1.0
+) -> Registration:
     """Return the pose of a frame in which points of an earlier frame agree best with it.
 
     Parameters
@@ -240,6 +242,8 @@ def register(landmarks: Landmarks, levels: Levels, start: NDArray[np.float64], n
         Predicted pose (4, 4), from the frame of the cloud to the table's.
     noise
         Standard deviation of depths at one metre.
+    doubt
+        Factor on the standard deviations of the error of the predicted pose.
 
     Returns
     -------
@@ -251,7 +255,7 @@ def register(landmarks: Landmarks, levels: Levels, start: NDArray[np.float64], n
     middle = landmarks.places.mean(axis=0) if len(landmarks.places) else np.zeros(3)
     pose = start.copy()
     drawn, counts = np.zeros(6), np.zeros(4)
-    trust = np.repeat([PRIOR_SHIFT**-2, PRIOR_TURN**-2], 3)
+    trust = np.repeat([PRIOR_SHIFT**-2, PRIOR_TURN**-2], 3) / doubt**2
     for level, tints, steps in zip(levels, landmarks.tints, ITERATIONS, strict=True):
         rays = np.linalg.inv(level.optics.matrix)
         for _ in range(steps):

@@ -9,7 +9,7 @@ things or the places of things that were lost.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -23,9 +23,9 @@ from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import OrientedBox, Scene
+from deixis.perception.scene import OrientedBox, Scene, turned_axes
 from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
-from deixis.perception.tracking.completion import FlatThing, revealed_part
+from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
 from deixis.perception.tracking.fitting import Fit, fits
 from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.outside import GAP, Hands, Outline
@@ -35,6 +35,7 @@ from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Changes, 
 from deixis.perception.tracking.registration import levels_of
 from deixis.perception.tracking.revolution import circle_around
 from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.table_colours import TableColours
 from deixis.perception.tracking.thing import Situation
 
 MIN_FINITE_SHARE = 0.02
@@ -67,8 +68,37 @@ EXPOSED = 0.3
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
 
+MIN_GAIN, LEAST_EXPOSED, SEEN_WELL = 0.15, 0.1, 0.5
+"""Least gain of agreement by which a thing that is mostly hidden has moved, the least share of its points that nothing
+hides where it rested, for this comparison, and the least share that is seen elsewhere without it."""
+
+BACK, BACK_AFTER = 0.7, 0.3
+"""Agreement from which a thing that is not found is again where it rested, and the time for which it was not found."""
+
+AROUND, MIN_EXPLAINED = 0.03, 0.6
+"""Distance in metres around a thing that is found far away, and its least share of the points that changed there."""
+
 RETRY_AFTER = 1.0
 """Time in seconds after which changed pixels that gave no thing are by themselves a reason to segment again."""
+
+MAX_TRIES = 2
+"""Number of segmentations that find no thing in pixels as high as the table, after which they are the table's."""
+
+FLAT = 0.002
+"""Height in metres up to which a point may be the table's."""
+
+ON_ITS_OWNER = -2
+"""Mark of a pixel that may show something on the thing that has it in the reference."""
+
+TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
+"""Largest time in seconds between the coming of a thing and of a piece of it, their distance in metres, and the least
+mean likeness of their colours in any light."""
+
+FILLED = 0.5
+"""Least ratio of the sides of two boxes of one thing."""
+
+BLIND_FOR = 1.5
+"""Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
 
 BLINK = 1.5
 """Time in seconds between two frames from which anything may have happened in between."""
@@ -111,8 +141,9 @@ class Tracker:
         self._at: float | None = None
         self._frame: NDArray[np.float64] | None = None
         self._outline, self._hands = Outline(), Hands()
+        self._colours = TableColours()
         self._motion: CameraMotion | None = None
-        self._moved_at = -np.inf
+        self._moved_at = self._placed_at = self._laid_out_at = -np.inf
         self._rests = itertools.count(1)
         self._optics: Optics | None = None
         self._view: TableView | None = None
@@ -161,11 +192,14 @@ class Tracker:
             return self._begin(cloud, at, number)
         assert self._optics is not None and self._view is not None and before is not None
         image = image_of(cloud, self._optics, self.settings.stride)
-        changes = self._seen_from_here(image, at)
+        changes, is_placed = self._seen_from_here(image, at)
+        if not is_placed and at - self._placed_at < BLIND_FOR:
+            return replace(self._situation(at, number), busy=True)
         if _camera_moved(changes):
             self._reference, self._things = None, []
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
-        self._reference.remember(image, changes, at, self.settings.tolerance, self._deviation)
+        limits = self.settings
+        self._reference.remember(image, changes, at, limits.tolerance, self._deviation, limits.colour)
         hand = self._hands.see(image, ~changes.same, self._outline, self._back)
         by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
         if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
@@ -250,7 +284,7 @@ class Tracker:
         self._view = table_view(image.optics, found.frame, image.depth.shape)
         heights = image.points.reshape(-1, 3) @ found.frame[2, :3] + found.frame[2, 3]
         on = np.abs(heights) < 0.01
-        self._outline, self._hands = Outline(), Hands()
+        self._outline, self._hands, self._colours = Outline(), Hands(), TableColours()
         self._outline.extend(image.places(np.flatnonzero(on), found.frame)[:, :2])
         self._noise = _noise(image.depth.ravel()[on], self._view.level.ravel()[on])
         return self._situation(at, number, self._lay_out(found, cloud, image, at, {}))
@@ -260,7 +294,7 @@ class Tracker:
     ) -> tuple[str, ...]:
         """Make a frame the reference, in which the objects of a detection are new things or those that are kept."""
         assert self._view is not None
-        self._last = cloud, image, self._number - 1
+        self._last, self._laid_out_at = (cloud, image, self._number - 1), at
         of = self._shown(found.labels, cloud)
         self._reference = Reference(image, np.full(of.shape, UNKNOWN_OWNER, np.int16), at)
         near = np.abs(image.depth - self._view.level) < np.maximum(
@@ -268,6 +302,7 @@ class Tracker:
         )
         plan = moved(image.points.reshape(-1, 3), self._view.back)
         beyond = self._outline.beyond(plan[:, :2]).reshape(of.shape) & (image.depth > 0)
+        self._colours.extend(image.colour[(of < 0) & near & (image.depth > 0)])
         self._reference.give(np.flatnonzero((of < 0) & (near | beyond)), TABLE, image)
         came = []
         for k in range(len(found.boxes)):
@@ -277,10 +312,19 @@ class Tracker:
             elif not self._outline.is_crossed_by(image.places(own, self._back)):
                 came.append(self._enter(found, cloud, np.flatnonzero(found.labels == k), k, at))
                 self._reference.give(own, self._things[-1].slot, image)
+        self._let_stand(came, image)
         rests = {thing.slot: thing.rest for thing in self._things}
         assert self._motion is not None
         self._motion.add_keyframe(image, levels_of(image), self._reference.owner, self._view, rests)
         return tuple(came)
+
+    def _let_stand(self, ids: Collection[str], image: FrameImage) -> None:
+        """Extend new things down to the table whose feet are hidden."""
+        assert self._view is not None
+        resting = [thing for thing in self._things if not thing.active]
+        for thing in resting:
+            if thing.id in ids and stands_behind(thing, resting, image, self._view):
+                thing.stand()
 
     def _shown(self, labels: NDArray[np.int32], cloud: PointCloud) -> NDArray[np.int32]:
         """Return the labels of a cloud at the pixels that are compared."""
@@ -389,7 +433,7 @@ class Tracker:
                 thing = matches[k]
                 if thing.active or _shared(reference.owner == thing.slot, of == k) < SAME_MODEL:
                     thing = self._remodelled(thing, self._modelled(whole, cloud, points, k, thing.id, thing.slot, at))
-            elif self._outline.is_crossed_by(image.places(pixels, self._back)):
+            elif self._outline.is_crossed_by(image.places(pixels, self._back)) or self._is_piece(image, pixels):
                 continue
             else:
                 came.append(self._enter(whole, cloud, points, k, at))
@@ -397,6 +441,7 @@ class Tracker:
                 thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
             ids[detected.id] = thing.id
             reference.give(pixels, thing.slot, image)
+        self._let_stand(came, image)
         situation = self._situation(at, number, tuple(came))
         return replace(situation, merged=tuple(thing.report(at) for thing in merged)), ids
 
@@ -430,13 +475,17 @@ class Tracker:
 
     # What rests and what moves
 
-    def _seen_from_here(self, image: FrameImage, at: float) -> Changes:
-        """Find where the camera is now, carry the reference to its view, and compare the frame with it."""
+    def _seen_from_here(self, image: FrameImage, at: float) -> tuple[Changes, bool]:
+        """Find where the camera is now, carry the reference to its view, and compare the frame with it.
+
+        The second value is False if a camera that has moved before is now at an unknown place.
+        """
         assert self._motion is not None and self._reference is not None and self._view is not None
         rests = {thing.slot: thing.rest for thing in self._things if not thing.active}
         found, levels = self._motion.follow(image, at, rests, self._noise)
         new = found is not None and self._motion.needs_keyframe()
         if found is not None:
+            self._placed_at = at
             if new:
                 self._motion.level(moved(image.points.reshape(-1, 3), self._motion.pose))
             view = table_view(image.optics, self._motion.pose, image.depth.shape)
@@ -451,9 +500,14 @@ class Tracker:
             self._motion.add_keyframe(image, levels, still, self._view, rests)
             on = np.flatnonzero(changes.same & (self._reference.owner == TABLE))
             self._outline.extend(image.places(on, self._back)[:, :2])
+            self._colours.extend(image.colour.reshape(-1, 3)[on])
             for thing in self._things:
                 thing.completed = False  # another side of it may be in view
-        return changes
+        return changes, found is not None or np.isinf(self._moved_at)
+
+    def _is_table_coloured(self, image: FrameImage) -> NDArray[np.bool_]:
+        """Return a mask (r, c) of the pixels whose colour the table may have."""
+        return self._colours.include(image.colour.reshape(-1, 3)).reshape(image.depth.shape)
 
     def _compare(self, image: FrameImage, at: float) -> Changes:
         assert self._reference is not None and self._view is not None
@@ -461,19 +515,19 @@ class Tracker:
         settings = self.settings
         return self._reference.compared(
             image, self._view.level, labels, settings.tolerance, self._deviation, settings.colour,
-            EDGE_REACH if at - self._moved_at < UNSTEADY_FOR else 0,
+            EDGE_REACH if at - self._moved_at < UNSTEADY_FOR else 0, self._colours,
         )  # fmt: skip
 
     def _look_at_resting(self, image: FrameImage, changes: Changes, at: float) -> None:
         """Decide by their pixels which resting things are still at their places."""
-        from deixis.perception.tracking.kernels import MISSING, NEARER, SAME
+        from deixis.perception.tracking.kernels import EDGE, MISSING, NEARER, SAME
 
         assert self._reference is not None
         for thing in self._things:
             if thing.active:
                 continue
             count = changes.counts[thing.slot]
-            measured = int(count.sum() - count[MISSING])
+            measured = int(count.sum() - count[MISSING] - count[EDGE])
             visible = measured - int(count[NEARER])
             if measured < MIN_OWN_PIXELS:
                 self._look_once_more(thing, image, at)
@@ -497,10 +551,10 @@ class Tracker:
 
     def _has_left(self, thing: Pipeline, changes: Changes) -> bool:
         """Return True if the place of a thing that was at rest shows what is behind it."""
-        from deixis.perception.tracking.kernels import COLOUR, FARTHER, MISSING, NEARER
+        from deixis.perception.tracking.kernels import COLOUR, EDGE, FARTHER, MISSING, NEARER
 
         count = changes.counts[thing.slot]
-        measured = int(count.sum() - count[MISSING])
+        measured = int(count.sum() - count[MISSING] - count[EDGE])
         visible, left = measured - int(count[NEARER]), int(count[FARTHER] + count[COLOUR])
         seen = visible >= max(MIN_OWN_PIXELS, 0.25 * measured)
         return seen and left > self.settings.moved * visible
@@ -527,7 +581,7 @@ class Tracker:
         same = changes.same
         free = np.flatnonzero(~same & (image.depth > 0))
         points = image.places(free, view.back)
-        above = points[:, 2] > 0.002
+        above = (points[:, 2] > FLAT) | ~self._is_table_coloured(image).ravel()[free]
         free, points = free[above], points[above]
         tints = image.colour.reshape(-1, 3)[free].astype(np.float64)
 
@@ -540,7 +594,10 @@ class Tracker:
             if not thing.found:
                 self._carry(thing)
         for thing, found, fit, visible in self._each(follow, moving):
-            if not self._is_certain(thing, found, fit, visible, at, seconds):
+            if not self._is_certain(thing, found, fit, visible, at, seconds, points):
+                if self._is_back(thing, image, same, at):
+                    self._claim(thing, image, changes)
+                    continue
                 if thing.found:
                     self._carry(thing)
                 thing.lost()
@@ -557,7 +614,8 @@ class Tracker:
         points, tints = points[left], tints[left]
         for thing, found, fit, visible in self._each(follow, doubtful):
             way = float(np.linalg.norm(found.place - thing.pose[:3, 3]))
-            if MIN_WAY < way < limits.jump and fit > 0.6 and visible > limits.visible:
+            moved_there = MIN_WAY < way < limits.jump and fit > 0.6 and visible > limits.visible
+            if moved_there and not self._is_as_likely_at_rest(thing, fit, visible, image, same):
                 self._start(thing)
                 thing.moved_to(found.pose, at, fit)
             else:
@@ -565,15 +623,55 @@ class Tracker:
                 thing.lost()
 
     def _is_certain(
-        self, thing: Pipeline, found: Estimate, fit: float, visible: float, at: float, seconds: float
+        self,
+        thing: Pipeline,
+        found: Estimate,
+        fit: float,
+        visible: float,
+        at: float,
+        seconds: float,
+        points: NDArray[np.float64],
     ) -> bool:
-        """Return True if a frame shows a thing where it was found; far from where it was, it must be seen well."""
+        """Return True if a frame shows a thing where it was found.
+
+        Far from where it was, it must be seen well, and be more than a part of what changed there.
+        """
         limits = self.settings
         if fit <= limits.fit or visible <= limits.visible:
             return False
         way = thing.way_from_expected(found.place, seconds)
         lost = at - thing.seen_at - seconds if thing.active and not thing.in_hand else 0.0
-        return way < limits.jump + MAX_SPEED * max(lost, 0.0) or (fit > 0.7 and visible > 0.5)
+        if way < limits.jump + MAX_SPEED * max(lost, 0.0):
+            return True
+        own, around = (thing.contains(points, margin, found.pose).sum() for margin in (limits.margin, AROUND))
+        return bool(fit > 0.7 and visible > 0.5 and own > MIN_EXPLAINED * around)
+
+    def _is_as_likely_at_rest(
+        self, thing: Pipeline, fit: float, visible: float, image: FrameImage, same: NDArray[np.bool_]
+    ) -> bool:
+        """Return True if a thing may as well be where it rested as where it was found.
+
+        It agrees as well with the frame there, or its place is hidden and too little of it is seen where it was found.
+        """
+        agreement, exposed = self._seen_where_it_rested(thing, image, same)
+        return agreement > fit - MIN_GAIN if exposed > LEAST_EXPOSED else visible < SEEN_WELL
+
+    def _is_back(self, thing: Pipeline, image: FrameImage, same: NDArray[np.bool_], at: float) -> bool:
+        """Let a thing that was not found rest where it rested before, if the frame shows it there."""
+        if at - thing.seen_at < BACK_AFTER:
+            return False
+        agreement, exposed = self._seen_where_it_rested(thing, image, same)
+        if exposed < EXPOSED or agreement < BACK:
+            return False
+        thing.put(thing.last_rest)
+        thing.moved_to(thing.last_rest, at, agreement)
+        self._settle(thing)
+        return True
+
+    def _seen_where_it_rested(self, thing: Pipeline, image: FrameImage, same: NDArray[np.bool_]) -> tuple[float, float]:
+        assert self._reference is not None and self._view is not None
+        taken = same & (self._reference.owner != thing.slot)
+        return thing.seen_at_place(image, self._view, taken, self._noise, thing.last_rest)
 
     def _carry(self, thing: Pipeline) -> None:
         """Move a thing that left its place and is not seen with the hand that may hold it."""
@@ -600,7 +698,8 @@ class Tracker:
         assert self._reference is not None and self._view is not None
         free = np.flatnonzero(~changes.same & (image.depth > 0))
         points = image.places(free, self._view.back)
-        own = free[thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
+        things, of = self._things_around(free, points, thing.settled_at)
+        own = free[(of == things.index(thing)) & thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
         thing.beneath = self._reference.give(own, thing.slot, image)
         changes.state.ravel()[own] = SAME
 
@@ -671,6 +770,8 @@ class Tracker:
         self, cloud: PointCloud, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
     ) -> tuple[str, ...]:
         """Segment what changed and stays as it is; return the ids of new things."""
+        from deixis.perception.tracking.kernels import FARTHER
+
         reference, limits = self._reference, self.settings
         assert reference is not None
         steady = at - reference.since >= limits.steady
@@ -678,27 +779,78 @@ class Tracker:
         if not len(free):
             return ()
         points = image.places(free, self._back)
-        flat = (np.abs(points[:, 2]) < 0.002) | self._outline.beyond(points[:, :2])
+        level = np.abs(points[:, 2]) < FLAT
+        nothing = self._is_table_coloured(image).ravel()[free] | (reference.tries.ravel()[free] >= MAX_TRIES)
+        flat = (level & nothing) | self._outline.beyond(points[:, :2])
         reference.give(free[flat], TABLE, image)
         free, points = free[~flat], points[~flat]
-        owner, edge = reference.owner.ravel()[free], self._edges(free, at)
+        edge = self._edges(free, at)
+        owner = np.where(edge | (changes.state.ravel()[free] == FARTHER), UNKNOWN_OWNER, reference.owner.ravel()[free])
         for thing in self._things:
-            turned = at - thing.settled_at < limits.turned_for
-            inside = thing.contains(points, limits.turned_margin if turned else limits.margin)
-            own = inside & ((owner != thing.slot) | edge) if not thing.active else np.zeros(len(free), np.bool_)
-            reference.give(free[own], thing.slot, image)
-            drop = own | (inside if thing.active and thing.found else False)
-            free, points, owner, edge = free[~drop], points[~drop], owner[~drop], edge[~drop]
-        free = free[~edge]
+            if not thing.active:  # what is nearer than a thing, or of another colour, may lie on it
+                owner[(owner == thing.slot) & thing.contains(points, limits.margin)] = ON_ITS_OWNER
+        things, of = self._things_around(free, points, at)
+        left = np.ones(len(free), np.bool_)
+        for number, thing in enumerate(things):
+            own = of == number
+            if not thing.active:
+                own &= owner != ON_ITS_OWNER
+                reference.give(free[own], thing.slot, image)
+            left &= ~own
+        free = free[left & ~edge]
         untried = int((reference.retry_at.ravel()[free] <= at).sum())
         if untried < limits.least_pixels or at - self._detected_at < DETECTION_PAUSE:
             return ()
         self._detected_at = at
         return self._segment(cloud, image, changes, free, at)
 
+    def _things_around(
+        self, pixels: NDArray[np.intp], points: NDArray[np.float64], at: float
+    ) -> tuple[list[Pipeline], NDArray[np.intp]]:
+        """Return the things that were found, and the number of the one that each pixel may show, or -1.
+
+        Of several things whose boxes contain a point, it is the smallest one whose own points are seen there; else the
+        largest one, on which the others lie.
+        """
+        limits = self.settings
+        things = [thing for thing in self._things if thing.found or not thing.active]
+        things.sort(key=lambda thing: float(np.prod(thing.oriented.extents)))
+        if not things:
+            return things, np.full(len(pixels), -1)
+        inside = np.array([thing.contains(points, limits.margin) for thing in things])
+        wide = np.array([
+            thing.contains(points, limits.turned_margin)
+            if at - thing.settled_at < limits.turned_for and not thing.active else np.zeros(len(points), np.bool_)
+            for thing in things
+        ])  # fmt: skip
+        inside = np.where(inside.any(axis=0), inside, wide)
+        of = np.where(inside.any(axis=0), inside.argmax(axis=0), -1)
+        several = np.flatnonzero(inside.sum(axis=0) > 1)
+        if len(several):
+            shown = inside[:, several]
+            largest = len(things) - 1 - shown[::-1].argmax(axis=0)
+            for number in np.flatnonzero(shown.any(axis=1)):
+                shown[number] &= self._footprint(things[number]).ravel()[pixels[several]]
+            of[several] = np.where(shown.any(axis=0), shown.argmax(axis=0), largest)
+        return things, of
+
+    def _footprint(self, thing: Pipeline) -> NDArray[np.bool_]:
+        """Return a mask (r, c) of the pixels at which the points of a thing are seen, and of those around them."""
+        from scipy.ndimage import binary_dilation
+
+        assert self._view is not None
+        mask = np.zeros(self._view.level.shape, np.bool_)
+        pixels, _ = self._view.pixels(thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3])
+        mask.ravel()[pixels] = True
+        around: NDArray[np.bool_] = binary_dilation(mask, np.ones((3, 3)), iterations=2)
+        return around
+
     def _edges(self, pixels: NDArray[np.intp], at: float) -> NDArray[np.bool_]:
-        """Return a mask of the pixels in strips of one or two pixels, which edges leave under a camera that moves."""
-        from scipy.ndimage import binary_opening
+        """Return a mask of the pixels in strips of one or two pixels beside things, which their edges leave there.
+
+        Edges leave such strips under a camera that moves.
+        """
+        from scipy.ndimage import binary_dilation, binary_opening
 
         assert self._reference is not None
         if at - self._moved_at >= UNSTEADY_FOR:
@@ -706,7 +858,9 @@ class Tracker:
         mask = np.zeros(self._reference.owner.shape, np.bool_)
         mask.ravel()[pixels] = True
         opened: NDArray[np.bool_] = binary_opening(mask, np.ones((3, 3)))
-        return ~opened.ravel()[pixels]
+        beside = binary_dilation(self._reference.owner > TABLE, np.ones((3, 3)), iterations=2)
+        found: NDArray[np.bool_] = (~opened & beside).ravel()[pixels]
+        return found
 
     def _segment(
         self, cloud: PointCloud, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float
@@ -731,21 +885,63 @@ class Tracker:
         if found is not None:
             first = stride // 2
             of = found.labels.reshape(cloud.organised)[first::stride, first::stride].ravel()[free]
-            for k in range(len(found.boxes)):
+            sizes = np.bincount(of[of >= 0], minlength=len(found.boxes))
+            for k in np.argsort(-sizes, kind="stable").tolist():  # a thing before its pieces
                 own = np.flatnonzero(found.labels == k)
                 pixels = free[of == k]
                 enough = len(pixels) >= self.settings.least_pixels and candidates[own].mean() > 0.5
                 if not enough or self._outline.is_crossed_by(image.places(pixels, self._back)):
                     continue
                 taken |= of == k
+                there = self._filled(found, k)
+                if there is not None:
+                    reference.give(pixels, there.slot, image)
+                    continue
+                if self._is_piece(image, pixels):
+                    continue
                 again = self._recognised(image, changes, pixels, at)
                 if again is None:
                     came.append(self._enter(found, cloud, own, k, at))
                     thing = self._things[-1]
                     thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
                     thing.beneath = reference.give(pixels, thing.slot, image)
+        self._let_stand(came, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
+        reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
         return tuple(came)
+
+    def _filled(self, found: Detection, k: int) -> Pipeline | None:
+        """Return the thing at rest whose box object ``k`` of a detection fills: it is the thing, which was hidden."""
+        assert self._frame is not None
+        change = self._frame @ np.linalg.inv(found.frame)
+        box = found.oriented[k]
+        corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+        corners = moved(corners * box.extents @ turned_axes(box.yaw) + box.centre, change)
+        least = FILLED * np.sort(box.extents)[::-1]
+        for thing in self._things:
+            sides = np.sort(thing.oriented.extents)[::-1]
+            fills = (FILLED * sides <= np.sort(box.extents)[::-1]).all() and (least <= sides).all()
+            if not thing.active and fills and thing.contains(corners, self.settings.turned_margin).all():
+                return thing
+        return None
+
+    def _is_piece(self, image: FrameImage, pixels: NDArray[np.intp]) -> bool:
+        """Add pixels to the thing of which they show a piece: it came when they did, touches them and has their hue."""
+        from scipy.spatial import cKDTree
+
+        assert self._reference is not None
+        points, tints = image.places(pixels, self._back), image.colour.reshape(-1, 3)[pixels].astype(np.float64)
+        since = float(np.median(self._reference.since.ravel()[pixels]))
+        for thing in self._things:
+            came = thing.first_rest and not thing.active and thing.since > self._laid_out_at
+            if not came or abs(thing.since - since) > TOGETHER or thing.likeness(tints, np.inf).mean() < ALIKE:
+                continue
+            away = cKDTree(thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3]).query(points)[0]
+            if thing.contains(points, self.settings.margin).mean() > 0.9 or away.min() < TOUCHING:
+                self._reference.give(pixels, thing.slot, image)
+                thing.extend(points, tints.astype(np.float32), self.settings.detection.outlines)
+                return True
+        return False
 
     def _recognised(self, image: FrameImage, changes: Changes, pixels: NDArray[np.intp], at: float) -> Pipeline | None:
         """Return the lost thing that pixels show, put there; None if they show a new thing."""

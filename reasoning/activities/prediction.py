@@ -160,7 +160,8 @@ class LayingModel:
         finished = float(np.prod(1 - coming))
         must = coming[:, None] * self._first[np.ix_(left, left)] * (1 - SLIP)
         free = np.prod(1 - must, axis=0) if len(left) else np.zeros(0)
-        weights = coming * free * self._succession(self._at.get(order[-1]) if order else -1, left)
+        overdue = 1 - np.prod(1 - self._first[np.ix_(left, np.array(there, dtype=np.int64))], axis=1)
+        weights = coming * free * self._succession(self._at.get(order[-1]) if order else -1, left, overdue)
         counts = Counter(kind for kind, _ in order)
         chances: dict[str, float] = {}
         for number, weight in zip(left.tolist(), weights.tolist(), strict=True):
@@ -241,13 +242,20 @@ class LayingModel:
         coming: NDArray[np.float64] = odds / (1 + odds)
         return coming
 
-    def _succession(self, last: int | None, left: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return how much more often than by chance each step that is left followed the last one directly."""
+    def _succession(
+        self, last: int | None, left: NDArray[np.int64], overdue: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return how much more often than by chance each step that is left followed the last one directly.
+
+        A step that is overdue, because two were swapped, follows whatever was laid last: what followed in the examples
+        did so when the step was done.
+        """
         if last is None or not len(left):
             return np.ones(len(left))
         counts = self._follows[last, left]
-        found: NDArray[np.float64] = (counts * len(left) + FOLLOWING) / (counts.sum() + FOLLOWING)
-        return found
+        found = (counts * len(left) + FOLLOWING) / (counts.sum() + FOLLOWING)
+        mixed: NDArray[np.float64] = (1 - overdue) * found + overdue * found.max()
+        return mixed
 
     def _place(self, kind: str, rank: int, laid: Laying) -> tuple[int, NextPlace] | None:
         """Return how often the thing of a kind and a rank from the left was there, and its place."""

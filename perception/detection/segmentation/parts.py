@@ -602,7 +602,7 @@ def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> f
     Returns
     -------
     float
-        Ratio without a unit; 0 also if the two are too wide for cutlery.
+        Ratio without a unit; 0 also if the two are too long or too wide for cutlery.
     """
     plans = [parts.patches.middles[part, :2] for part in (one, two)]
     longer = max(plans, key=lambda plan: extents(plan)[0])
@@ -611,7 +611,9 @@ def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> f
     (length, width), (along, across) = high.max(axis=0) - low.min(axis=0), high.min(axis=0) - low.max(axis=0)
     settings = parts.settings
     overlap = settings.end_overlap_share * (high - low)[:, 0].min()
-    if width > settings.max_cutlery_width or across < 0 or not -settings.max_cutlery_gap < along < overlap:
+    if length > settings.max_cutlery_length or width > settings.max_cutlery_width or across < 0:
+        return 0.0
+    if not -settings.max_cutlery_gap < along < overlap:
         return 0.0
     return float(length / max(width, settings.patch_width))
 

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.simulator.cameras.camera import Camera, looking_pose
 from deixis.perception.simulator.films.camera_paths import CameraPath, HeadMotion, Walk
 from deixis.perception.simulator.films.motion import FilmedFrame, Move, Rest, film
@@ -78,6 +79,25 @@ def test_jump_of_the_camera_is_noted() -> None:
     with Tracker(TrackingSettings(stride=1)) as tracker:
         tracker.update(frames[0].cloud, 0.0)
         assert any("the camera moved" in note for note in tracker.update(frames[1].cloud, 0.1).notes)
+
+
+def test_nothing_is_concluded_while_a_hand_hides_the_view() -> None:
+    frames = [frame for frame, _ in walked()[:12]]
+    with Tracker(TrackingSettings(stride=1)) as tracker:
+        for frame in frames[:6]:
+            before = tracker.update(frame.cloud, frame.at)
+        for frame in frames[6:9]:
+            assert frame.cloud.organised is not None
+            near = PointCloud(
+                0.3 * frame.cloud.points, np.zeros_like(frame.cloud.colours), organised=frame.cloud.organised
+            )
+            hidden = tracker.update(near, frame.at)
+            assert hidden.busy and [thing.state for thing in hidden.things] == ["seen", "seen"] and not hidden.went
+        for frame in frames[9:]:
+            now = tracker.update(frame.cloud, frame.at)
+    assert [thing.id for thing in now.things] == [thing.id for thing in before.things] and not now.notes
+    for one, other in zip(before.things, now.things, strict=True):
+        assert np.linalg.norm(one.centre - other.centre) < 0.003
 
 
 def jumping() -> list[Camera]:

@@ -7,7 +7,7 @@ import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
-from deixis.perception.tracking.completion import FlatThing, revealed_part
+from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
 from deixis.perception.tracking.image import FrameImage, Optics, TableView, table_view
 from deixis.perception.tracking.pipeline import Pipeline
 from deixis.perception.tracking.reference import TABLE, Reference
@@ -18,6 +18,7 @@ OPTICS = Optics(np.array([[200.0, 0, 59.5], [0, 200.0, 29.5], [0, 0, 1]]), np.ze
 BACK = np.diag([1.0, -1.0, -1.0, 1.0])
 BACK[2, 3] = 1.0  # the camera is one metre above the table and looks down: a pixel is 5 mm
 WOOD, STEEL, BLUE = (140, 105, 73), (190, 190, 195), (40, 60, 160)
+WHITE, SHADED = (235, 230, 225), (215, 210, 205)
 KNIFE = np.s_[29:32, 20:80]
 """Pixels of a knife of 30 cm that lies along a row."""
 
@@ -117,6 +118,44 @@ def test_pieces_of_one_thing_are_found(is_hidden: bool) -> None:
     assert flat(handle, on).pieces([tines]) == [tines]
     assert flat(handle, on).pieces([later]) == [], "it was set down later"
     assert flat(tines, on).pieces([handle]) == [], "the larger piece is the thing"
+
+
+def test_short_ends_of_one_thing_are_joined_behind_another() -> None:
+    on = table()
+    tip, handle = np.s_[29:32, 42:45], np.s_[29:32, 61:66]
+    lay(on, tip, STEEL, 2)
+    lay(on, np.s_[15:45, 45:61], BLUE, 3, 0.15)
+    lay(on, handle, STEEL, 1)
+    end = thing_at(tip, 2)
+    assert flat(thing_at(handle, 1), on).pieces([end]) == [end]
+    lay(on, np.s_[15:45, 45:61], WOOD, TABLE)
+    assert flat(thing_at(handle, 1), on).pieces([end]) == [], "nothing hides what is between them"
+
+
+def test_end_of_a_spoon_on_a_plate_is_found() -> None:
+    on = table()
+    lay(on, np.s_[10:50, 10:110], WHITE, 2, 0.015)
+    lay(on, np.s_[10:50, 70:76], SHADED, 2, 0.015)  # the wall of the plate
+    lay(on, np.s_[28:33, 62:74], STEEL, 2, 0.015)
+    lay(on, np.s_[29:32, 30:62], STEEL, 1, 0.015)
+    added = flat(thing_at(np.s_[29:32, 30:62], 1), on).missing_part()
+    rows, columns = np.divmod(added, SHAPE[1])
+    assert set(columns.tolist()) == set(range(62, 74)) and set(rows.tolist()) <= set(range(28, 33))
+
+
+@pytest.mark.parametrize(("is_hidden", "stands"), [(True, True), (False, False)])
+def test_thing_with_a_hidden_foot_stands_on_the_table(is_hidden: bool, stands: bool) -> None:
+    on, glass = table(), thing_at(np.s_[25:35, 55:65], 1, BLUE)
+    glass.pose = glass.pose.copy()
+    glass.pose[2, 3] = 0.2
+    glass.oriented = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.05, 0.05, 0.06))
+    if is_hidden:
+        lay(on, np.s_[20:40, 50:70], STEEL, 2, 0.22)
+    image = FrameImage(np.zeros((*SHAPE, 3), np.float32), on.depth, on.colour, OPTICS)
+    assert stands_behind(glass, [glass], image, view()) == stands
+    glass.stand()
+    assert glass.pose[2, 3] == pytest.approx(0.115) and glass.oriented.extents[2] == pytest.approx(0.23)
+    assert not stands_behind(glass, [glass], image, view())
 
 
 def test_cutlery_side_by_side_is_not_in_pieces() -> None:

@@ -77,6 +77,9 @@ GESTURE_PAUSE = 0.5
 MAX_BRINGING_SECONDS = 5.0
 """Maximum time in seconds between words that announce a thing (*first the plate*) and the thing's coming to rest."""
 
+MAX_LATE_SECONDS = 15.0
+"""Time in seconds after that in which a thing may still be found that came to rest in time but was hidden."""
+
 BRINGING_SCALE = 0.5
 """Time in seconds by which things that come later, or earlier, than another one are e times less likely the announced
 thing."""
@@ -217,7 +220,10 @@ class _Writer:
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
         self._waiting: list[_Words] = []
         self._came: dict[str, float] = {}  # time at which each thing came to the table; -inf if it lay there at first
-        self._announced: set[str] = set()  # things that words announced
+        self._announced: dict[str, _Announced] = {}  # words that announced each thing
+        self._unmet: list[_Announced] = []  # words whose things have not come yet, in order
+        self._announcing: list[float] = []  # times of all words that announced something
+        self._looked_at = -math.inf
         self._notes: set[str] = set()
         self._dropped: tuple[int, str | None, float] = (
             0,
@@ -242,7 +248,7 @@ class _Writer:
         utterance = Utterance(
             printed_line(typed.statement.object or "", MAX_CHARACTERS), self._at, speaker=typed.statement.subject
         )
-        self._waiting.append(_Words(utterance, typed.id))
+        self._wait_for(_Words(utterance, typed.id))
         if at_once:
             self._hear(math.inf)
         self.flush()
@@ -291,7 +297,7 @@ class _Writer:
             if isinstance(event, Skeleton):
                 self._watch(event)
             else:
-                self._waiting.append(_Words(event))
+                self._wait_for(_Words(event))
         self._hear(event.at)
 
     def _take_frame(self, frame: Frame) -> None:
@@ -356,7 +362,7 @@ class _Writer:
         self._take(situation)
         if situation.frame is None or situation.at - self._moved_at < STILL_SECONDS:
             return
-        if _states(situation) != self._written:
+        if _states(situation) != self._written or self._looked_at < self._moved_at:
             self._look()
         else:
             self._write_watched(situation.at)
@@ -419,14 +425,18 @@ class _Writer:
         The tracker segments only what changed; a look at the whole table, as at one that is seen for the first time, is
         what the robot learns from and compares with.
         """
-        self._undone = self._look
+        self._undone, self._looked_at = self._look, self._situation.at
         file = self._folder / f"{self._board.new_id('table')}.scene.json"
         self._undone = None
         found = self._detected()
         if found is None:
             self._write_table(self._things, file)
+            return
+        situation, ids = self._tracker.look_again(found)
+        if _states(situation) == self._written and not situation.merged:
+            self._write_watched(situation.at)  # a hand passed over the table
         else:
-            self._correct(found, *self._tracker.look_again(found), file)
+            self._correct(found, situation, ids, file)
 
     def _detected(self) -> Scene | None:
         """Return the things of the whole table; None where it is not found."""
@@ -453,10 +463,15 @@ class _Writer:
             if thing.id not in ids.values() and thing.state == "hidden" and not thing.moving
         ]
         self._write_table(replace(found, objects=tuple(things), detection=None), file)
+        self._name_announced()
 
     def _drop_merged(self, situation: Situation) -> None:
         """Delete the places of things that turned out to be parts of others."""
         parts = [self._places.pop(thing.id, None) for thing in situation.merged]
+        for thing in situation.merged:
+            if announced := self._announced.pop(self._id(thing.id), None):  # the whole thing was meant
+                self._unmet.append(announced)
+                self._unmet.sort(key=lambda each: each.utterance.at)
         self._outbox.add(*(Delete(part[0]) for part in parts if part is not None))
 
     def _write_table(self, scene: Scene, file: Path) -> None:
@@ -517,6 +532,12 @@ class _Writer:
                 added = self._add(statement, gesture.start, source, probability, gesture.finish)
                 self._outbox.add(added)
 
+    def _wait_for(self, words: _Words) -> None:
+        """Keep words until their moment has passed."""
+        self._waiting.append(words)
+        if words.announced is not None:
+            self._announcing.append(words.utterance.at)
+
     def _hear(self, now: float) -> None:
         """Write the words of which the moment has passed, in which people may still point or lay things."""
         while self._waiting and now > self._waiting[0].until:
@@ -525,6 +546,9 @@ class _Writer:
             self._attempt(partial(self._write_utterance, _printable(words.utterance)), failure)
             if words.typed is not None:
                 self._outbox.add(Finish(words.typed, max(self._board.seconds(), self._time(words.utterance.at))))
+        while self._unmet and now > self._unmet[0].utterance.end + MAX_BRINGING_SECONDS + MAX_LATE_SECONDS:
+            self._write_label(self._announced_label(self._unmet[0]))
+            del self._unmet[0]
 
     def _write_utterance(self, utterance: Utterance) -> None:
         """Write words, and the names that they give to things."""
@@ -532,24 +556,45 @@ class _Writer:
         finish = utterance.end if utterance.end > utterance.at else utterance.at + MIN_DURATION
         statement, certainty = (utterance.speaker, SAID, utterance.text), max(utterance.confidence, 0.01)
         self._outbox.add(self._add(statement, utterance.at, source, certainty, finish))
-        shown = replace(source, origin=Origin.SHOWN)
-        for label in self._labels(utterance):
-            if label.target is not None and label.refused is None and label.name is not None:
-                what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
-                self._outbox.add(self._add(what, utterance.at, shown, label.probability))
-            elif label.name is not None and label.refused is not None:
-                noticed = f"'{label.name}' was not learned: {label.refused}. {label.question or ''}".strip()
-                self._outbox.add(self._add((utterance.speaker, NOTICED, noticed), utterance.at, shown))
+        announced = announced_thing(utterance.text)
+        if announced is not None and utterance.confidence >= MIN_CONFIDENCE:
+            self._unmet.append(_Announced(utterance, announced))
+            self._name_announced()
+        else:
+            for label in self._labels(utterance, announced):
+                self._write_label(label)
 
-    def _labels(self, utterance: Utterance) -> Sequence[PointedLabel]:
+    def _write_label(self, label: PointedLabel) -> None:
+        """Write a name that words give to a thing, or why nothing is taught."""
+        utterance = label.utterance
+        shown = Source(Origin.SHOWN, utterance.speaker, f"words at {utterance.at:.1f} s")
+        if label.target is not None and label.refused is None and label.name is not None:
+            what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
+            self._outbox.add(self._add(what, utterance.at, shown, label.probability))
+        elif label.name is not None and label.refused is not None:
+            noticed = f"'{label.name}' was not learned: {label.refused}. {label.question or ''}".strip()
+            self._outbox.add(self._add((utterance.speaker, NOTICED, noticed), utterance.at, shown))
+
+    def _name_announced(self) -> None:
+        """Give the things that came, also those that were found late, the names that announced them."""
+        number = 0
+        while number < len(self._unmet):
+            label = self._announced_label(self._unmet[number])
+            if label.target is None or label.refused is not None:
+                number += 1
+                continue
+            self._write_label(label)
+            self._announced[label.target] = self._unmet.pop(number)
+            number = 0  # one thing fewer that the others may mean
+
+    def _labels(self, utterance: Utterance, announced: str | None) -> Sequence[PointedLabel]:
         """Return what words name.
 
-        That is the thing whose id they have (*t3 is a fork*), what is pointed at meanwhile, or what comes to the table
-        meanwhile (*first the plate*).
+        That is the thing whose id they have (*t3 is a fork*), or what is pointed at meanwhile.
         """
-        announced = announced_thing(utterance.text)
         if announced is not None:
-            return (self._announced_label(utterance, announced),)
+            unsure = f"recognised with a confidence of {utterance.confidence:.2f} only"
+            return (PointedLabel(utterance, announced, probability=utterance.confidence, refused=unsure),)
         thing, name = named(utterance.text)
         if name is not None and (thing is not None or not self._things.objects):
             label = PointedLabel(utterance, name.name, name.positive, thing, utterance.confidence)
@@ -562,15 +607,23 @@ class _Writer:
             return ()
         return taught_labels([pointed_label(utterance, tuple(self._pointings), self._things)], self._things)[0]
 
-    def _announced_label(self, utterance: Utterance, name: str) -> PointedLabel:
-        """Return what was announced with the thing that came to rest nearest in time, or why none is taught."""
+    def _announced_label(self, announced: _Announced) -> PointedLabel:
+        """Return what was announced with the thing that came to rest nearest in time, or why no thing gets the name.
+
+        What came between earlier words and the next ones is left to the earlier words, unless the person says what she
+        has just laid.
+        """
+        utterance, name = announced.utterance, announced.name
         label = PointedLabel(utterance, name, probability=utterance.confidence)
-        if utterance.confidence < MIN_CONFIDENCE:
-            return replace(label, refused=f"recognised with a confidence of {utterance.confidence:.2f} only")
+        ahead = [each for thing, each in self._announced.items() if self._came[thing] >= each.utterance.at]
+        earlier = [each.utterance.at for each in (*self._unmet, *ahead) if each.utterance.at < utterance.at]
+        spans = [(at, min((later for later in self._announcing if later > at), default=math.inf)) for at in earlier]
         away = {
             thing: max(utterance.at - at, at - utterance.end, 0.0)
             for thing, at in self._came.items()
-            if thing in self._things.ids and thing not in self._announced
+            if thing in self._things.ids
+            and thing not in self._announced
+            and not any(start <= at < end for start, end in spans)
         }
         near = [thing for thing, seconds in away.items() if seconds <= MAX_BRINGING_SECONDS]
         if not near:
@@ -583,7 +636,6 @@ class _Writer:
             return replace(label, refused=f"{thing} came, but does not have the size of a {name}")
         if share < SURE:
             return replace(label, refused=f"several things came: {', '.join(sorted(near))}")
-        self._announced.add(thing)
         return replace(label, target=thing, probability=share * utterance.confidence)
 
     # ---- writing
@@ -622,15 +674,25 @@ class _Writer:
 
 
 @dataclass(frozen=True, slots=True)
+class _Announced:
+    """Words that announce a thing, and its name."""
+
+    utterance: Utterance
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
 class _Words:
-    """Words that wait until their moment has passed, and the fluent of those that were typed."""
+    """Words that wait until their moment has passed, the thing that they announce, and the fluent of typed ones."""
 
     utterance: Utterance
     typed: str | None = None
+    announced: str | None = field(init=False)
     until: float = field(init=False)
 
     def __post_init__(self) -> None:
-        moment = SAME_MOMENT + STILL_SECONDS if announced_thing(self.utterance.text) is None else MAX_BRINGING_SECONDS
+        object.__setattr__(self, "announced", announced_thing(self.utterance.text))
+        moment = SAME_MOMENT + STILL_SECONDS if self.announced is None else MAX_BRINGING_SECONDS
         object.__setattr__(self, "until", self.utterance.end + moment)
 
 

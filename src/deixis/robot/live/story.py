@@ -30,6 +30,7 @@ from deixis.robot.modules import made
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.perception.simulator.cameras.camera import Camera
+    from deixis.perception.simulator.films.camera_paths import CameraPath
     from deixis.perception.simulator.laying import LaidThing
 
 Event = Frame | Skeleton | Utterance
@@ -62,17 +63,35 @@ class StoryTruth:
     things
         The things on the table at the end, with their names, in the frame of the simulated table.
     camera
-        The camera with its pose in that frame.
+        The camera with its mean pose in that frame.
     forgotten
         Name of the thing that is missing at the end, or None.
     laid
         Names of the things in the order in which a person laid them while the robot looked.
+    path
+        Movement of the camera; None if it stands still.
     """
 
     things: Scene
     camera: Camera
     forgotten: str | None = None
     laid: tuple[str, ...] = ()
+    path: CameraPath | None = None
+
+    def camera_at(self, at: float) -> Camera:
+        """Return the camera with its pose at a time.
+
+        Parameters
+        ----------
+        at
+            Time of the story in seconds.
+
+        Returns
+        -------
+        Camera
+            The camera with its pose in the frame of the simulated table.
+        """
+        return self.camera if self.path is None else self.path.moved(self.camera, at)
 
 
 @dataclass(frozen=True, eq=False)
@@ -395,8 +414,9 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
         stage.carry_out(Bring(table.things[k]))
         stage.carry_out(Rest(SPEECH_PAUSE))
     top, eye = top_under(table.things), chair_camera(table)
-    truth = StoryTruth(truth_scene(table), eye, laid=tuple(table.things[k].name for k in order))
-    return Story(stage.film(top, eye, camera_path(camera, seed)).frames(rate, seed), tuple(words), (), truth)
+    path = camera_path(camera, seed)
+    truth = StoryTruth(truth_scene(table), eye, laid=tuple(table.things[k].name for k in order), path=path)
+    return Story(stage.film(top, eye, path).frames(rate, seed), tuple(words), (), truth)
 
 
 def _supports_another(thing: LaidThing, things: Iterable[LaidThing]) -> bool:

@@ -200,6 +200,12 @@ def test_two_pieces_in_a_line_join_if_their_heights_allow_it(
     assert len(whole_things(_apart(*pieces[::-1]))) == count
 
 
+@pytest.mark.parametrize(("end", "count"), [(0.26, 1), (0.33, 2)])
+def test_two_forks_in_a_line_are_not_one_piece(end: float, count: int) -> None:
+    pieces = [_grid((0.0, 0.01), ends, 0.004) for ends in ((0.0, 0.15), (0.17, end))]
+    assert len(whole_things(_apart(*pieces))) == count
+
+
 @pytest.mark.parametrize(
     ("normal", "top", "count"),
     [((1.0, 0.0, 0.1), 0.06, 1), ((0.0, 0.0, 1.0), 0.06, 2), ((1.0, 0.0, 0.1), 0.12, 2)],
