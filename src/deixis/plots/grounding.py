@@ -159,7 +159,7 @@ def told_figure(told: Told, axes: Axes | None = None) -> Figure:
     Parameters
     ----------
     told
-        Answer of :meth:`deixis.Robot.told`.
+        Answer of :meth:`deixis.robot.robot.Robot.told`.
     axes
         Axes to draw into, or None for a new figure.
 
@@ -202,7 +202,7 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
     Parameters
     ----------
     look
-        Answer of :meth:`deixis.Robot.look`.
+        Answer of :meth:`deixis.robot.robot.Robot.look`.
     axes
         Axes to draw into, or None for a new figure.
 

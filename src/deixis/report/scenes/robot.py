@@ -18,7 +18,7 @@ def look_lines(look: Look) -> Iterator[str]:
     Parameters
     ----------
     look
-        Answer of :meth:`deixis.Robot.look`.
+        Answer of :meth:`deixis.robot.robot.Robot.look`.
 
     Yields
     ------
@@ -43,7 +43,7 @@ def look_to_dict(look: Look) -> dict[str, Any]:
     Parameters
     ----------
     look
-        Answer of :meth:`deixis.Robot.look`.
+        Answer of :meth:`deixis.robot.robot.Robot.look`.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def look_rows(look: Look) -> list[dict[str, Any]]:
     Parameters
     ----------
     look
-        Answer of :meth:`deixis.Robot.look`.
+        Answer of :meth:`deixis.robot.robot.Robot.look`.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def told_lines(told: Told) -> Iterator[str]:
     Parameters
     ----------
     told
-        Answer of :meth:`deixis.Robot.told`.
+        Answer of :meth:`deixis.robot.robot.Robot.told`.
 
     Yields
     ------
@@ -120,7 +120,7 @@ def told_to_dict(told: Told) -> dict[str, Any]:
     Parameters
     ----------
     told
-        Answer of :meth:`deixis.Robot.told`.
+        Answer of :meth:`deixis.robot.robot.Robot.told`.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def told_rows(told: Told) -> list[dict[str, Any]]:
     Parameters
     ----------
     told
-        Answer of :meth:`deixis.Robot.told`.
+        Answer of :meth:`deixis.robot.robot.Robot.told`.
 
     Returns
     -------
