@@ -102,14 +102,14 @@ def _words(*phrases: str) -> str:
     return f"(?:{'|'.join(BETWEEN.join(map(re.escape, phrase.split())) for phrase in found)})"
 
 
-_SIDED = f"(?:{_words(*SIDES)}(?:[ \\t_-]+{_words(*SIDES)})*+{BOUNDARY})"
-_ARTICLE = r"(?:(?:the|an|a)[ \t_]+)?+"
+_SIDED = f"(?:{_words(*SIDES)}(?>(?:[ \\t_-]+{_words(*SIDES)})*){BOUNDARY})"
+_ARTICLE = r"(?>(?:(?:the|an|a)[ \t_]+)?)"
 _NOUN = _words(*PLACE_NOUNS)
 _REGION = f"(?:{_SIDED}{BETWEEN})?{_words('edge', 'end', 'side', 'corner')}"
 _NOT_OF = f"(?!{BETWEEN}of{BOUNDARY})"
-_WHICH = f"{BETWEEN}(?:any{BETWEEN})?+(?:{_SIDED}{BETWEEN})?"
+_WHICH = f"{BETWEEN}(?>(?:any{BETWEEN})?)(?:{_SIDED}{BETWEEN})?"
 _MIDDLE_OF_SIDE = (
-    f"{_words('middle', 'centre', 'center')}{BETWEEN}of{BETWEEN}{_SIDED}(?:{BETWEEN}{_words('edge', 'end', 'side')})?+"
+    f"{_words('middle', 'centre', 'center')}{BETWEEN}of{BETWEEN}{_SIDED}(?>(?:{BETWEEN}{_words('edge', 'end', 'side')})?)"
 )
 _PLACE = f"{_words('at', 'in', 'on', 'along')}{_WHICH}(?:{_MIDDLE_OF_SIDE}|{_NOUN})"
 _PLACE_OF = (  # others, as 'in the middle of' and 'on the left side of', are relations
@@ -121,12 +121,12 @@ _RANK = f"{_ARTICLE}(?:{_words(*RANKS)}|[1-9][0-9]?(?:st|nd|rd|th)){BETWEEN}from
 _PARALLEL = f"parallel{BETWEEN}{_words('to', 'with')}{BETWEEN}{_REGION}"
 _CLOSER_TO_REGION = f"{_words(*CLOSER)}{BETWEEN}{_REGION}"
 _WITH_PART = (
-    f"with{BETWEEN}(?:its{BETWEEN})?+{_words(*PARTS)}{BETWEEN}(?:{_words('pointing', 'facing', 'turned')}{BETWEEN})?+"
+    f"with{BETWEEN}(?>(?:its{BETWEEN})?){_words(*PARTS)}{BETWEEN}(?>(?:{_words('pointing', 'facing', 'turned')}{BETWEEN})?)"
 )
 _TO = _words(*TOWARD)
 _DISTANCE = (
-    f"(?:{_words(*(w for words in DISTANCES.values() for w in words if w))}{BETWEEN})?+"
-    rf"[0-9]++(?:\.[0-9]++)?+[ \t]*+{_words(*UNITS)}(?:{BETWEEN}away)?{BETWEEN}from"
+    f"(?>(?:{_words(*(w for words in DISTANCES.values() for w in words if w))}{BETWEEN})?)"
+    rf"(?>[0-9]+(?:\.[0-9]+)?[ \t]*){_words(*UNITS)}(?:{BETWEEN}away)?{BETWEEN}from"
 )
 
 CLAIM_PATTERN = "|".join(
@@ -137,9 +137,9 @@ CLAIM_PATTERN = "|".join(
         f"in{BETWEEN}row{BETWEEN}from{BETWEEN}{_SIDED}{BETWEEN}to{BETWEEN}{_SIDED}",
         f"in{BETWEEN}{_words(*ARRANGEMENTS)}{BOUNDARY}{_NOT_OF}",
         f"{_words(*(w for words in EACH_OTHER.values() for w in words))}{BETWEEN}each{BETWEEN}other{BOUNDARY}",
-        f"(?>{_words('pointing', 'facing')}{BETWEEN}(?:{_words('to', 'toward', 'towards')}{BETWEEN})?+"
+        f"(?>{_words('pointing', 'facing')}{BETWEEN}(?>(?:{_words('to', 'toward', 'towards')}{BETWEEN})?)"
         f"{_words(*DIRECTIONS)}){BOUNDARY}{_NOT_OF}",
-        f"(?>{_WITH_PART}(?:{_TO}{BETWEEN})?+{_words(*DIRECTIONS)}){BOUNDARY}{_NOT_OF}",
+        f"(?>{_WITH_PART}(?>(?:{_TO}{BETWEEN})?){_words(*DIRECTIONS)}){BOUNDARY}{_NOT_OF}",
         f"(?>{_PARALLEL}){BOUNDARY}{_NOT_OF}",
         f"(?>{_CLOSER_TO_REGION}){BOUNDARY}{_NOT_OF}",
         f"(?>{_RANK}){_NOT_OF}",
