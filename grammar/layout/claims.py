@@ -109,7 +109,8 @@ _REGION = f"(?:{_SIDED}{BETWEEN})?{_words('edge', 'end', 'side', 'corner')}"
 _NOT_OF = f"(?!{BETWEEN}of{BOUNDARY})"
 _WHICH = f"{BETWEEN}(?>(?:any{BETWEEN})?)(?:{_SIDED}{BETWEEN})?"
 _MIDDLE_OF_SIDE = (
-    f"{_words('middle', 'centre', 'center')}{BETWEEN}of{BETWEEN}{_SIDED}(?>(?:{BETWEEN}{_words('edge', 'end', 'side')})?)"
+    f"{_words('middle', 'centre', 'center')}{BETWEEN}of{BETWEEN}{_SIDED}"
+    f"(?>(?:{BETWEEN}{_words('edge', 'end', 'side')})?)"
 )
 _PLACE = f"{_words('at', 'in', 'on', 'along')}{_WHICH}(?:{_MIDDLE_OF_SIDE}|{_NOUN})"
 _PLACE_OF = (  # others, as 'in the middle of' and 'on the left side of', are relations
@@ -121,7 +122,8 @@ _RANK = f"{_ARTICLE}(?:{_words(*RANKS)}|[1-9][0-9]?(?:st|nd|rd|th)){BETWEEN}from
 _PARALLEL = f"parallel{BETWEEN}{_words('to', 'with')}{BETWEEN}{_REGION}"
 _CLOSER_TO_REGION = f"{_words(*CLOSER)}{BETWEEN}{_REGION}"
 _WITH_PART = (
-    f"with{BETWEEN}(?>(?:its{BETWEEN})?){_words(*PARTS)}{BETWEEN}(?>(?:{_words('pointing', 'facing', 'turned')}{BETWEEN})?)"
+    f"with{BETWEEN}(?>(?:its{BETWEEN})?){_words(*PARTS)}{BETWEEN}"
+    f"(?>(?:{_words('pointing', 'facing', 'turned')}{BETWEEN})?)"
 )
 _TO = _words(*TOWARD)
 _DISTANCE = (

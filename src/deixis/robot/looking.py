@@ -75,6 +75,18 @@ class Look(Answer):
         Probability of each known layout, the most probable first; what is left is that of no known layout.
     explanations
         Explanation of the table by each layout.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import deixis
+    >>> low, high = [[0, 0, 0], [0.1, 0, 0], [0.4, 0, 0]], [[0.03, 0.2, 0.02], [0.35, 0.25, 0.02], [0.43, 0.2, 0.02]]
+    >>> with tempfile.TemporaryDirectory() as folder, deixis.Robot(folder + "/memory") as robot:
+    ...     scene = robot.sees(deixis.Scene.from_boxes(low, high))
+    ...     told = robot.told("layout supper; fork left of plate; knife right of plate")
+    ...     look = robot.look()
+    >>> look.layout, look.name("o1"), list(look.names["o2"]), look.faults()
+    ('supper', 'fork', ['plate'], ())
     """
 
     scene: Scene

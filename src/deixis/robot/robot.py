@@ -69,7 +69,18 @@ class RobotError(DeixisError, ValueError):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Told(Answer):
-    """Result of describing a layout: the lesson, what the session learned, the known roles, and those that wait."""
+    """Result of describing a layout: the lesson, what the session learned, the known roles, and those that wait.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> low, high = [[0, 0, 0], [0.1, 0, 0], [0.4, 0, 0]], [[0.03, 0.2, 0.02], [0.35, 0.25, 0.02], [0.43, 0.2, 0.02]]
+    >>> with tempfile.TemporaryDirectory() as folder, Robot(folder + "/memory") as robot:
+    ...     scene = robot.sees(Scene.from_boxes(low, high))
+    ...     told = robot.told("layout supper; fork left of plate; knife right of plate")
+    >>> told.taught, told.waiting
+    (('fork', 'plate', 'knife'), ())
+    """
 
     lesson: TableLesson
     learned: Learned

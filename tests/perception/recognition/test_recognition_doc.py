@@ -23,7 +23,7 @@ def test_the_python_on_the_page_runs() -> None:
 
 def test_the_constants_on_the_page_are_those_of_the_code() -> None:
     assert f"shipped threshold, {SHIPPED.threshold}," in TEXT
-    assert f"fewer than {MIN_HELD_OUT_ANSWERS} known or {MIN_HELD_OUT_ANSWERS} unknown" in TEXT
+    assert f"fewer than {MIN_HELD_OUT_ANSWERS} held-out answers about known" in TEXT
     assert f"at most {MAX_HELD_OUT}," in TEXT and f"({DEFAULT.exact_up_to:,})" in TEXT
     assert f"below {100 * MIN_ICD_SHARE:.0f} % of that median" in TEXT
     assert (DEFAULT.effort.lists, DEFAULT.effort.few) == (6, 10)
