@@ -46,6 +46,8 @@ class OrientedBox:
     >>> knife = OrientedBox((0.3, 0.2, 0.005), np.pi / 2, (0.22, 0.02, 0.01))
     >>> knife.axes.round(3).tolist()
     [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    >>> knife.corners.min(axis=0).round(3).tolist(), knife.corners.max(axis=0).round(3).tolist()
+    ([0.29, 0.09, 0.0], [0.31, 0.31, 0.01])
     >>> knife.rounded(1)
     OrientedBox(centre=(0.3, 0.2, 0.0), yaw=1.6, extents=(0.2, 0.0, 0.0))
     """
@@ -74,6 +76,13 @@ class OrientedBox:
     def axes(self) -> NDArray[np.float64]:
         """Unit vectors along the extents as rows, shape (3, 3), right-handed; the last one points up."""
         return turned_axes(self.yaw)
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """Corners in the frame of the scene, shape (8, 3)."""
+        signs = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+        corners: NDArray[np.float64] = signs * self.extents @ self.axes + self.centre
+        return corners
 
     def to_open3d(self) -> Any:
         """Return the box for Open3D.

@@ -345,7 +345,5 @@ class FlatThing:
 
 def _corners(thing: Pipeline) -> NDArray[np.float64]:
     """Return the corners (8, 3) of the turned box of a thing, in the table's frame."""
-    box, signs = thing.oriented, np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-    own = signs * box.extents @ turned_axes(box.yaw) + box.centre
-    corners: NDArray[np.float64] = own @ thing.pose[:3, :3].T + thing.pose[:3, 3]
+    corners: NDArray[np.float64] = thing.oriented.corners @ thing.pose[:3, :3].T + thing.pose[:3, 3]
     return corners

@@ -509,9 +509,7 @@ class Pipeline:
         if np.trace(turn) > 1 + 2 * np.cos(np.deg2rad(3.0)):
             box = np.stack([self.pose[:3, 3] - self.half, self.pose[:3, 3] + self.half])
         else:
-            corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-            corners = corners * self.oriented.extents @ turned_axes(self.oriented.yaw) + self.oriented.centre
-            corners = corners @ turn.T + self.pose[:3, 3]
+            corners = self.oriented.corners @ turn.T + self.pose[:3, 3]
             box = np.stack([corners.min(axis=0), corners.max(axis=0)])
         points = self.cloud.points @ turn.T.astype(np.float32) + self.pose[:3, 3].astype(np.float32)
         faded = 0.5 ** (max(at - self.seen_at, 0.0) / MEMORY_OF_THE_HIDDEN)

@@ -23,7 +23,7 @@ from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import OrientedBox, Scene, turned_axes
+from deixis.perception.scene import OrientedBox, Scene
 from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
 from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
 from deixis.perception.tracking.fitting import Fit, fits
@@ -915,8 +915,7 @@ class Tracker:
         assert self._frame is not None
         change = self._frame @ np.linalg.inv(found.frame)
         box = found.oriented[k]
-        corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-        corners = moved(corners * box.extents @ turned_axes(box.yaw) + box.centre, change)
+        corners = moved(box.corners, change)
         least = FILLED * np.sort(box.extents)[::-1]
         for thing in self._things:
             sides = np.sort(thing.oriented.extents)[::-1]

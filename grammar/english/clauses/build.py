@@ -794,27 +794,9 @@ _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edg
 
 
 _LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
-_ARRANGEMENTS = frozenset(
-    {
-        "triangle",
-        "semicircle",
-        "pattern",
-        "fan",
-        "pyramid",
-        "arc",
-        "spiral",
-        "diamond",
-        "grid",
-        "formation",
-        "heap",
-        "setting",
-        "arrangement",
-        "layout",
-        "style",
-        "fashion",
-        "manner",
-        "order",
-    }
+_ARRANGEMENTS = word_set(
+    "triangle semicircle pattern fan pyramid arc spiral diamond grid formation heap"
+    " setting arrangement layout style fashion manner order"
 )
 _QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
 _FASTENING = word_set(

@@ -814,17 +814,15 @@ def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
         again = again or (chunk.type == "MEASURE" and type_at(chunks, i + 1) == "PREP")
         at = len(found) - 2
         if put and chunk.type == "PREP" and _is_filled(found):  # 'put a jug filled with water between the cups'
-            found.insert(
-                at, Chunk("COMMA", found[at].start, found[at].start, None, (found[at].span[0], found[at].span[0]))
-            )
-            found += [Chunk("COMMA", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])), chunk]
+            found.insert(at, put_in("COMMA", found[at]))
+            found += [put_in("COMMA", chunk), chunk]
             continue
         while type_at(found, at) == "OF" and type_at(found, at - 1) == "NP":
             at -= 2
         place = found[at].value.preposition.relation if type_at(found, at) == "PREP" else ""
         of_place = place in ("on", "inside") and not _names_place(found, at + 1)  # 'on the shelf facing the door'
         if put and place and type_at(found, len(found) - 1) == "NP" and (aims or (not of_place and (turned or again))):
-            found.append(Chunk("COMMA", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
+            found.append(put_in("COMMA", chunk))
         found.append(chunk)
     return found
 
@@ -846,13 +844,10 @@ def _with_places_of_pairs(chunks: list[Chunk]) -> list[Chunk]:
     """Return the chunks of *with A on the left and B and C on the right* with the place after *B*, too."""
     types = [chunk.type for chunk in chunks]
     for i in range(3, len(chunks) - 5):
-        pair = types[i : i + 6] == ["AND", "NP", "AND", "NP", "PREP", "NP"] and "WITH" in types[:i]
-        start = i - 4 if pair and types[i - 4 : i] == ["WITH", "NP", "PREP", "NP"] else None
-        if start is None and pair and types[i - 6 : i] == ["WITH", "NP", "PREP", "NP", "OF", "NP"]:
-            start = i - 6
-        if start is None:
-            continue
-        return [*chunks[: i + 2], *chunks[i + 4 : i + 6], *chunks[i + 2 :]]
+        pair = types[i : i + 6] == ["AND", "NP", "AND", "NP", "PREP", "NP"]
+        place = ["WITH", "NP", "PREP", "NP"]
+        if pair and (types[i - 4 : i] == place or types[max(0, i - 6) : i] == [*place, "OF", "NP"]):
+            return [*chunks[: i + 2], *chunks[i + 4 : i + 6], *chunks[i + 2 :]]
     return chunks
 
 
@@ -869,8 +864,7 @@ def _with_places_of_nearest(chunks: list[Chunk]) -> list[Chunk]:
             and is_place(found[i + 3].value)
             and second.value.preposition.phrase == "on"
         ):
-            at = second.span[0]
-            found.insert(i + 2, Chunk("COMMA", second.start, second.start, None, (at, at)))
+            found.insert(i + 2, put_in("COMMA", second))
     return found
 
 
