@@ -21,6 +21,7 @@ from deixis.cli import common
 from deixis.cli.common import BAD_INPUT, UNDECIDED, print_note
 from deixis.cli.completion import keep_completion_fast
 from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
+from deixis.cli.numbers import say_numbers_in_words
 from deixis.cli.output import visible_output, what_is_kept
 
 COMMAND_GROUPS = {
@@ -119,7 +120,9 @@ class CommandsOnDemand(TyperGroup):
             single.add_typer(command, name=cmd_name, cls=FullSummaries)
         else:
             single.command(cmd_name)(command)
-        return typer.main.get_group(single).commands[cmd_name]
+        found = typer.main.get_group(single).commands[cmd_name]
+        say_numbers_in_words(found)
+        return found
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the commands with their summaries, group by group, in columns of one width."""
