@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 # How long one example takes depends on the load of the machine, and on kernels that are compiled at their first call.
@@ -11,6 +13,17 @@ settings.register_profile("deixis", deadline=None, max_examples=40)  # the suite
 settings.load_profile("deixis")
 
 pytest_plugins = ["pytester"]
+
+LONG = frozenset(Path(__file__).with_name("long_tests.txt").read_text(encoding="utf-8").splitlines())
+"""Tests that take long, as ``tools/long_tests.py`` measured."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the long tests, before pytest selects tests by their marks."""
+    for item in items:
+        if item.nodeid in LONG:
+            item.add_marker("long")
 
 
 def pytest_collection_finish() -> None:

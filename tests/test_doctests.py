@@ -25,12 +25,7 @@ TOOLS = [
 ]
 
 
-LONG = {"deixis.session", "deixis.workflows.scenes.track"}
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in (*MODULES, *TOOLS)]
-)
+@pytest.mark.parametrize("name", [*MODULES, *TOOLS])
 def test_docstring_examples_run(name: str) -> None:
     if name == "documentation.docstrings":
         pytest.importorskip("sphinx", reason="needs sphinx, of the extra docs")

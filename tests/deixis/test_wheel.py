@@ -63,7 +63,6 @@ def test_the_wheel_holds_the_tree(tmp_path: Path, links: str) -> None:
     assert packaged(build(tree, tmp_path / "dist", "--wheel")) == set(shipped_files())
 
 
-@pytest.mark.long
 def test_the_sdist_holds_all_sources_and_builds_the_wheel(tmp_path: Path) -> None:
     tree, out = copied(tmp_path / "tree", "links"), tmp_path / "dist"
     assert packaged(build(tree, out)) == set(shipped_files())  # built from the sdist

@@ -22,7 +22,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/words",
     "guides/descriptor_and_engine",
     "guides/check",
-    pytest.param("guides/live", marks=pytest.mark.long),
+    "guides/live",
     "guides/refer",
     "guides/tell",
     "guides/habits",

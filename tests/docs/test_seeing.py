@@ -19,7 +19,6 @@ def without_numbers(line: str) -> str:
     return " ".join(re.sub(r"-?\d+(\.\d+)?", "#", line).split())
 
 
-@pytest.mark.long
 def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (layout,) = [text for language, text in blocks(PAGE) if language == "layout"]

@@ -71,7 +71,6 @@ def test_a_scene_becomes_its_clouds_and_boxes(tmp_path: Path) -> None:
         Scene(things).to_open3d()
 
 
-@pytest.mark.long
 def test_the_classes_are_those_of_the_whole_library() -> None:
     """Import all of open3d in another process, because that takes a second, and compare the classes."""
     code = (

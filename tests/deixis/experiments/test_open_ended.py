@@ -195,7 +195,6 @@ def test_missing_scikit_learn_is_reported_before_any_work(monkeypatch: pytest.Mo
     assert err.count("\n") == 1
 
 
-@pytest.mark.long
 def test_every_contestant_runs_every_order_reproducibly(found: OpenEnded) -> None:
     again = run(found.plan, entered=[EQUATIONS, NEAREST])
     (one,), (other,) = found.findings, again.findings

@@ -195,7 +195,6 @@ def _figures(found: Scoreboard) -> list[tuple[object, ...]]:
     return [(s.setting, s.contestant, s.right, s.grouped, repr(s.facts), repr(s.value)) for s in found.main.scores]
 
 
-@pytest.mark.long
 def test_the_same_seed_gives_the_same_figures(tiny: Scoreboard) -> None:
     assert _figures(run(TINY)) == _figures(tiny)
 

@@ -85,7 +85,6 @@ def right(memory: SemanticMemory) -> bool:
 NUMBERS = count()
 
 
-@pytest.mark.long
 @pytest.mark.slow
 @settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.integers(0, 5), min_size=2, max_size=7))
@@ -207,7 +206,6 @@ def test_the_next_lesson_counts_a_memory_without_statistics(lessons: list[Lesson
         assert kept(memory) == expected and right(memory)
 
 
-@pytest.mark.long
 def test_verify_finds_what_does_not_follow_from_the_lessons(lessons: list[Lesson], tmp_path: Path) -> None:
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
         keep(memory, lessons[:3])
@@ -273,7 +271,6 @@ def test_of_a_batch_all_lessons_are_kept_or_none(tmp_path: Path) -> None:
         assert session.learn_all([]) == ()
 
 
-@pytest.mark.long
 def test_many_lessons_come_part_by_part_to_the_same(
     lessons: list[Lesson], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -351,7 +348,6 @@ def exported(folder: Path) -> str:
         return export_memory(memory)
 
 
-@pytest.mark.long
 def test_the_disk_is_given_back_after_forgetting(half_forgotten: tuple[Path, str]) -> None:
     folder, text = half_forgotten
     before = size(folder)
@@ -360,7 +356,6 @@ def test_the_disk_is_given_back_after_forgetting(half_forgotten: tuple[Path, str
     assert exported(folder) == text
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("steps", range(4))
 def test_a_crash_while_giving_back_loses_nothing(
     half_forgotten: tuple[Path, str], steps: int, monkeypatch: pytest.MonkeyPatch

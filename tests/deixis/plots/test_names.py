@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from matplotlib.figure import Figure
 
 from deixis.perception.scene import PerceivedObject, Scene
@@ -26,7 +25,6 @@ def grid(number: int, side: float) -> list[PerceivedObject]:
     return [PerceivedObject(f"thing_{n}", (x, y), (x + 0.8 * side, y + 0.8 * side)) for n, (x, y) in enumerate(corners)]
 
 
-@pytest.mark.long
 def test_the_axis_counts_the_names_that_have_no_room() -> None:
     (axes,) = written(grid(900, 0.33)).axes
     assert not axes.texts

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from deixis.grammar.layout.parser import parse_script
 from deixis.learning.layouts.experience import Experience, Moments, Tally
@@ -56,7 +55,6 @@ def known(folder: Path) -> dict[str, Mapping[str, object]]:
     return found
 
 
-@pytest.mark.long
 def test_layouts_are_read_again_in_any_order_of_lessons(tmp_path: Path) -> None:
     found = []
     for number, order in enumerate(((0, 1, 2), (2, 0, 1))):

@@ -20,7 +20,6 @@ def problems(text: str) -> ScriptError:
     return caught.value
 
 
-@pytest.mark.long
 @pytest.mark.slow
 def test_a_hundred_thousand_lines() -> None:
     with processor_time_below(60):  # takes about 6 s
@@ -59,7 +58,6 @@ def test_one_long_line(text: str) -> None:
         assert len(message) < 2_000
 
 
-@pytest.mark.long
 def test_long_lists() -> None:
     many = ", ".join(f"n{i}" for i in range(50_000))
     assert len(parse_script(f"{many} left of plate").facts) == 50_000

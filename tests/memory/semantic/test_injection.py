@@ -41,7 +41,6 @@ def quads(memory: SemanticMemory) -> set[ox.Quad]:
     return {quad for quad in memory.store if quad.graph_name != ORDER}
 
 
-@pytest.mark.long
 @settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(name=NASTY, lesson=NASTY)
 def test_no_name_changes_the_number_of_triples_or_graphs(memory: SemanticMemory, name: str, lesson: str) -> None:

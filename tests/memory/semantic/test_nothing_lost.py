@@ -70,7 +70,6 @@ def check_whole(memory: SemanticMemory) -> None:
         assert merged == {triple for name in UNION for triple in memory.triples(name)}
 
 
-@pytest.mark.long
 @pytest.mark.slow
 def test_kills_lose_no_acknowledged_lesson_and_leave_no_half_one(tmp_path: Path) -> None:
     """Check the memory after every fifth kill; the children in between start where one was killed."""

@@ -173,7 +173,6 @@ def test_an_old_memory_is_brought_up_to_date(kept_old: Path, kept_export: str) -
     assert sorted(entry.name for entry in (kept_old).iterdir()) == ["memory.json", "owner.lock", "semantic"]
 
 
-@pytest.mark.long
 def test_damage_found_while_migrating_is_called_damage(kept_old_folder: Path, tmp_path: Path) -> None:
     said = []
     for number, table in enumerate((kept_old_folder / "semantic").glob("*.sst")):

@@ -47,7 +47,6 @@ def centres(now: Situation, frame: FilmedFrame) -> dict[str, np.ndarray]:
     return {thing.id: change[:3, :3] @ thing.centre + change[:3, 3] for thing in now.things}
 
 
-@pytest.mark.long
 def test_moved_thing_keeps_its_id_and_is_followed() -> None:
     offsets = []
     for frame, now in moved_mug():

@@ -60,7 +60,6 @@ def test_an_inconsistency_has_a_minimal_justification() -> None:
     assert_minimal(found, text)
 
 
-@pytest.mark.long
 def test_an_inconsistency_beyond_the_rules_is_justified() -> None:
     others = "".join(f":C{i} a owl:Class ; rdfs:subClassOf :C{i + 1} . :i{i} a :C{i} ." for i in range(12))
     table = TABLE.replace("dx:Fork", ":Fork").replace("dx:Spoon", ":Spoon")
@@ -70,7 +69,6 @@ def test_an_inconsistency_beyond_the_rules_is_justified() -> None:
     assert_minimal(found, text)
 
 
-@pytest.mark.long
 def test_all_minimal_contradictory_subsets_are_justifications() -> None:
     said = ":Spork rdfs:subClassOf :Fork, :Spoon . :x a :Spork, :Fork . :y a :Fork, :Spoon ."
     text = ntriples(CUTLERY + said)

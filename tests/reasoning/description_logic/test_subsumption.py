@@ -98,7 +98,6 @@ def memory_of(rng: random.Random, most: int = 1) -> ox.Store:
     return store
 
 
-@pytest.mark.long
 @pytest.mark.slow
 def test_hermit_agrees_on_generated_lessons() -> None:
     outcomes = set()

@@ -79,7 +79,6 @@ def test_what_figure_7_settles_is_decided(graph_of: MakeGraph, figure_7: list[st
     assert found.matches["dinner_plate"].decided
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("engine", ENGINES)
 def test_the_fuller_script_is_grounded_whole_in_every_order(
     engine: str, graph_of: MakeGraph, full_script: list[str]
@@ -116,7 +115,6 @@ PLAIN: dict[str, Grounding] = {}
 """The answers by engine when nothing is shuffled, each worked out once."""
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("engine", ENGINES)
 @settings(max_examples=12, deadline=None)
 @given(seed=st.integers(0, 2**20))

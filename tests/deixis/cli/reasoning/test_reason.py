@@ -80,7 +80,6 @@ def test_the_verdict_alone_is_printed_on_request(table: Path, spork: Path) -> No
     assert code == 2 and "--verdict excludes" in err
 
 
-@pytest.mark.long
 def test_all_justifications_of_a_statement_are_printed(tmp_path: Path) -> None:
     chains = tmp_path / "chains.ttl"
     said = ":r a owl:ObjectProperty, owl:TransitiveProperty . :f :r :p, :m . :p :r :k . :m :r :k ."
@@ -112,7 +111,6 @@ def test_what_does_not_follow_is_a_no(table: Path) -> None:
     assert (code, out) == (1, "") and "does not follow" in err
 
 
-@pytest.mark.long
 def test_everything_remembered_is_reasoned_over(tmp_path: Path) -> None:
     with Session(tmp_path / "memory") as session:
         session.learn(example("formal_dinner.layout"), example("place_setting.scene.json"))

@@ -65,7 +65,6 @@ def test_what_conforms_exits_0(data: Path, tmp_path: Path) -> None:
     assert deixis("validate", data, "--shapes", lenient) == (0, "conforms\n", "")
 
 
-@pytest.mark.long
 def test_a_memory_is_validated_by_own_shapes(tmp_path: Path) -> None:
     with Session(tmp_path / "memory") as session:
         session.learn(example("formal_dinner.layout"), example("place_setting.scene.json"))

@@ -29,7 +29,6 @@ CHAPTERS = [
 ]
 
 
-@pytest.mark.long
 def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     tell(tmp_path / "out")

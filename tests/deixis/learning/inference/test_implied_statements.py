@@ -149,7 +149,6 @@ def test_forgetting_a_lesson_removes_what_it_implied(tmp_path: Path) -> None:
         assert left == []
 
 
-@pytest.mark.long
 def test_the_next_lesson_completes_an_older_memory(tmp_path: Path) -> None:
     with Session(tmp_path / "memory") as session:
         session.learn(example("script1.layout"), example("place_setting.scene.json"))

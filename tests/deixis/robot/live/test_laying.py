@@ -44,7 +44,6 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
         return Ran(folder / "memory", lines, robot.things())
 
 
-@pytest.mark.long
 def test_announced_things_are_named_as_they_come(ran: Ran) -> None:
     assert {thing.name for thing in ran.things} == {"dinner_plate", "water_glass"}
     assert any("robot: I see" in line and "is a dinner plate" in line for line in ran.lines)

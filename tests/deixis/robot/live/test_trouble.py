@@ -123,7 +123,6 @@ class NoIds(FullDisk):
         return super().new_id(prefix)
 
 
-@pytest.mark.long
 def test_a_full_disk_during_a_look_loses_no_thing_and_no_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("deixis.robot.modules.RESTART_PAUSE", 0.001)
     script = tmp_path / "pair.layout"

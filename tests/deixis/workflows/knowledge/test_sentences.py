@@ -87,7 +87,6 @@ def text_of(sentences: list[int], in_english: bool) -> str:
 FOLDERS = count()
 
 
-@pytest.mark.long
 @settings(max_examples=1, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.permutations(range(5)), st.integers(2, 5), st.integers(0, 4), st.booleans(), st.booleans())
 @example([0, 1, 2, 3, 4], 3, 2, True, True)

@@ -145,7 +145,6 @@ def empty(tmp_path_factory: pytest.TempPathFactory, lessons: list[tuple[Lesson, 
 NUMBERS = count()
 
 
-@pytest.mark.long
 @settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @example([(0, True), (Teaching(0, 0, "widget"), False), (2, False), (Teaching(0, 0, "doodad"), True)], Random(1))
 @given(st.lists(st.tuples(events, st.booleans()), min_size=2, max_size=6), st.randoms(use_true_random=False))

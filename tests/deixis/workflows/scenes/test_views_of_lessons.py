@@ -71,7 +71,6 @@ def test_a_killed_write_has_happened_or_has_not(
         assert state(tmp_path / "m") in (before, after), step
 
 
-@pytest.mark.long
 def test_a_write_that_the_semantic_store_refuses_changes_neither(
     example: Example, memory: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -111,7 +110,6 @@ def test_a_journal_that_was_cut_short_changes_nothing(memory: Path) -> None:
     assert not (memory / "perceptual" / JOURNAL).exists()
 
 
-@pytest.mark.long
 def test_the_stores_agree_after_each_write(example: Example, memory: Path) -> None:
     with Session(memory) as session:
         again = session.learn(example.script, example.scene(3))  # the same views belong to two lessons
@@ -131,7 +129,6 @@ def test_the_stores_agree_after_each_write(example: Example, memory: Path) -> No
     assert findings(memory) == ()
 
 
-@pytest.mark.long
 def test_verify_names_where_the_stores_differ(example: Example, memory: Path) -> None:
     with Session(memory) as session:
         session.views().rename("fork", "prongs")  # behind the back of the lessons

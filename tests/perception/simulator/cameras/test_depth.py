@@ -38,7 +38,6 @@ def test_an_ideal_sensor_measures_the_bare_table_exactly() -> None:
     assert np.abs(camera.pixels(camera.to_table(cloud.points)) - np.column_stack([u.ravel(), v.ravel()])).max() < 0.01
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("z", [0.7, 1.0, 2.0])
 def test_noise_has_the_published_standard_deviation(z: float) -> None:
     cloud = see(BARE, above(z), DepthSensor(missing=0.0, grazing=(3.0, 4.0)), seed=1)

@@ -98,7 +98,6 @@ def test_select_decides_the_criterion_for_subgraphs(
     assert not by_similarity.proved_best
 
 
-@pytest.mark.long
 def test_the_exact_value_is_never_below_that_of_the_similarity(graph_of: MakeGraph, full_script: list[str]) -> None:
     for seed in range(5):
         question = evidence(graph_of(*full_script), formal_setting(seed, displacement=0.05))

@@ -166,7 +166,6 @@ def same_answers(evidence: Evidence) -> bool:
     return any(one.probability == 0 for one in found.sides)
 
 
-@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(labelled_evidences())
 def test_left_out_hypotheses_change_no_answer(evidence: Evidence) -> None:
@@ -251,7 +250,6 @@ def test_three_labels_that_are_wrong_give_way_to_many_facts(seed: int) -> None:
     assert len(decided) > 5 and all(decided)
 
 
-@pytest.mark.long
 def test_things_at_shuffled_places_are_another_scene() -> None:
     noticed, accused = [], []
     for seed in range(6):

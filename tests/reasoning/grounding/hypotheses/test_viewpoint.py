@@ -120,7 +120,6 @@ def test_quarter_turns_and_mirrors_are_recovered(quarters: int, mirrored: bool) 
     assert len(found.ties) == 1
 
 
-@pytest.mark.long
 def test_tables_at_any_angle_ground_as_well_as_unturned_ones() -> None:
     rng, turned_right, unturned_right, ignored_right = np.random.default_rng(5), 0, 0, 0
     for seed in range(4):
