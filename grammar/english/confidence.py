@@ -29,6 +29,9 @@ class Guess(StrEnum):
     PRONOUN = "the pronoun can stand for several things"
     THOSE = "'these' or 'those' can stand for several things"
     ACTION = "the verb tells an action, and where it happens need not be where the thing is"
+    CONTESTED = "the commas or conjunctions can be read otherwise"
+    ELLIPSIS = "a phrase without a noun goes back to things that were named long before"
+    THEY = "it is not clear which things 'they' stands for"
     BARE = "a word without an article can be another word than the name of a thing"
 
 
@@ -42,6 +45,9 @@ SHARE_RIGHT = {
     Guess.THOSE: 0.33,
     Guess.BARE: 0.22,
     Guess.ACTION: 0.6,
+    Guess.CONTESTED: 0.66,
+    Guess.ELLIPSIS: 0.55,
+    Guess.THEY: 0.5,
 }
 """Share of right facts among those with one guess.
 
