@@ -468,7 +468,7 @@ class References:
         Returns
         -------
         Entity or None
-            Group with a noun; None if the text has none yet.
+            Group with a noun; None if the text has none yet, or if the sentence names several things since.
         """
         if besides is not None and besides.group is not None:
             return besides.group
@@ -479,6 +479,8 @@ class References:
                 group = entity.itself if entity.itself.members else entity.itself.group
                 if group is not None and group.noun:
                     return group
+                if entity.plural and focus.sentence == self.sentence:
+                    return None  # 'the bolts are stacked, the heaviest at the bottom'
         late = (e for e in reversed(self.entities) if e.born >= self.sentence - MAX_SENTENCES_TO_GROUP)
         return next((e for e in late if e.members and e.noun), None)
 
@@ -604,7 +606,8 @@ class References:
             return self._new(replace(phrase, head=phrase.of.head, of=None), Role.THING)  # 'two of the beads'
         if group is None:
             group = self.last_group(besides)
-            if group is not None and not self._is_fresh(group):
+            told_apart = bool(phrase.adjectives) or phrase.pronoun is not None
+            if group is not None and told_apart and not self._is_fresh(group):
                 self.guesses.append((phrase.span, Guess.ELLIPSIS))
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
         second = relation is None and phrase.pronoun == "other" and phrase.determiner == "the" and not phrase.plural
