@@ -61,6 +61,8 @@ class JointChunker(VerbChunker):
             return Chunk("ADVERB", at, at + 1, norm)  # 'the neck, not yet glued, …'
         if norm == "whose":
             return Chunk("WHOSE", at, at + 1)
+        if norm == "once" and previous == "REL":
+            return Chunk("ADVERB", at, at + 1, norm)  # 'the seal that once hung from it'
         if norm in ("where", "how", "why") or (norm == "when" and after in IS_FORMS):
             return Chunk(
                 "WHERE" if norm == "where" and (after in IS_FORMS or after in MODALS) else "SUB", at, at + 1, norm

@@ -726,7 +726,7 @@ def _places(relator: Relator, places: tuple[NounPhrase, ...], span: Span) -> lis
 def _positioned(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     """Return the predicate of a place; *from the left* is an ordinal without its number."""
     relation = relator.preposition.relation
-    if relation == "from" and is_place(phrase) and phrase.of is None:
+    if relation == "from" and is_place(phrase) and phrase.of is None and phrase.determiner not in ("a", "an"):
         side = (
             phrase.head
             if phrase.head != "end" and phrase.head != "side"

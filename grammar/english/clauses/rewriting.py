@@ -225,7 +225,9 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
-    """Find for whom a thing is: *put out a bowl for you*, *put the glass for the guest right of the cup*."""
+    """Find for whom a thing is: *put out a bowl for you*, *left you a cake*, *the glass for the guest right of it*."""
+    if type_at(chunks, at - 1) in ("TVERB", "PUT") and type_at(chunks, at + 1) == "NP" and chunks[at].type == "NP":
+        return (at + 1, None) if chunks[at].value.pronoun in PERSONS and not chunks[at].value.head else None
     if not (chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and at > 0):
         return None
     person = type_at(chunks, at + 1) == "NP" and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
