@@ -79,12 +79,12 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
     rivals = [(_Said.by(other), other, in_conjunction) for other, in_conjunction in others]
     guessed = any(clause.guesses for clause in first.clauses) or bool(first.guesses)
     for theirs, other, _ in rivals:
-        simpler = theirs.size < said.size and len(theirs.all) <= len(said.all)
+        simpler = (theirs.odd, theirs.number) < (said.odd, said.number) and theirs.number <= said.number
         if not guessed and simpler and theirs.can_replace(said):
             kept, said = other, theirs
     contested: set[Span] = set()
     for theirs, _, in_conjunction in rivals:
-        if (in_conjunction or len(theirs.all) < len(said.all)) and theirs.can_replace(said):
+        if (in_conjunction or theirs.number < said.number) and theirs.can_replace(said):
             contested |= {span for span, proposition in said.spans if not theirs.has(proposition)}
     return replace(kept, contested=frozenset(contested))
 
@@ -110,9 +110,9 @@ class _Said:
     odd: int  # coordinations of unlike phrases, and gaps of which only one side is named: 'between the cup'
 
     @property
-    def size(self) -> tuple[int, int]:
-        """Number of odd constructions, and of propositions."""
-        return self.odd, len(self.all)
+    def number(self) -> int:
+        """Number of propositions that do not equate two things."""
+        return sum(proposition.relation != "kind" for proposition in self.all)
 
     @staticmethod
     def by(sentence: Sentence) -> _Said:
