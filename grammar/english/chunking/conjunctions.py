@@ -70,7 +70,7 @@ class JointChunker(VerbChunker):
         if norm == "there" and (
             after in IS_FORMS
             or (after == "used" and self.norms[at + 2] == "to")
-            or after in ("'ll", "should", "must", "will", "can", "may", "might", "shall")
+            or after in ("'ll", "should", "must", "will", "can", "could", "may", "might", "shall", "would")
             or (previous in FINITE and at == 1)
             or (after in _THERE_STANDS and self._previous() in JOINT_TYPES | {"", "ADVERB"})
         ):

@@ -22,7 +22,13 @@ from deixis.grammar.english.vocabulary.function_words import (
 )
 from deixis.grammar.english.vocabulary.idioms import IDIOMS
 from deixis.grammar.english.vocabulary.nouns import PARTS
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, Preposition, places_alone, prepositions
+from deixis.grammar.english.vocabulary.relation_words import (
+    CIRCUMSTANCES,
+    DIRECTION_WORDS,
+    Preposition,
+    places_alone,
+    prepositions,
+)
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import FIND_VERBS, PUT_VERBS
 
@@ -292,7 +298,7 @@ class FixedPhraseChunker(JointChunker):
         for i in range(at + 1, at + 6):
             norm = self.norms[i]
             general = norm in _OCCASIONS and self.norms[at + 1] in _GENERAL
-            if (norm in _CIRCUMSTANCES or general) and not self.nouns.is_noun(i + 1):
+            if (norm in CIRCUMSTANCES or general) and not self.nouns.is_noun(i + 1):
                 if self.norms[i + 1 : i + 3] == ["of", "thumb"]:
                     return i + 3
                 return None if self.norms[i + 1] in ("of", "'s", "to") else i + 1
@@ -455,13 +461,8 @@ class FixedPhraseChunker(JointChunker):
         return Chunk("ADV", at, i, Relator(Preposition(order, "row")))
 
 
-_CIRCUMSTANCES = word_set(
-    "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
-)
-"""Nouns that name no place after *in*, *at*, *as*, *on* and *under*."""
-
-_OCCASIONS = word_set("setting settings case cases event instance situation situations household households")
-"""Nouns that name no place if they are general: *in a formal setting*, not *in the setting*."""
+_OCCASIONS = word_set("case cases event instance situation situations household households")
+"""Nouns that name no place if they are general: *in a rare case*, not *in the case*."""
 
 _GENERAL = word_set("a an any some many most more few other certain every each no this that which both all")
 

@@ -53,7 +53,10 @@ class VerbChunker(RelatorChunker):
         if self._previous() == "AND" and (shared := self._second_verb(at)) is not None:
             return shared
         i, adverbs, modal, positive, past = at, [], None, True, False
+        begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
         while (self.norms[i] in ADVERBS | HEDGES and self.norms[i] != "about") or self.norms[i] == "never":
+            if begins and self.norms[i] == "there" and self.norms[i + 1] in IS_FORMS | MODALS.keys():
+                return None  # 'perhaps there is a spoon'
             if self.norms[i] == "never":
                 positive = False
             else:

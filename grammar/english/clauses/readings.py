@@ -43,13 +43,17 @@ def other_joints(chunks: list[Chunk]) -> Iterator[tuple[list[Chunk], bool]]:
 
 
 def _in_list(chunks: list[Chunk], at: int) -> bool:
-    """Return True for a comma between bare noun phrases of a list: *a drum, a doll and a kite*."""
-    end = at
-    while [chunk.type for chunk in chunks[end : end + 2]] == ["COMMA", "NP"]:
-        end += 2
-    end += [chunk.type for chunk in chunks[end : end + 2]] == ["COMMA", "AND"]
-    listed = [chunk.type for chunk in chunks[end : end + 2]] == ["AND", "NP"]
-    return end > at and listed and at > 0 and chunks[at - 1].type == "NP"
+    """Return True for a comma between bare noun phrases of a list: *a drum, a doll and a kite*, *cup, jug, tin*."""
+    types = [chunk.type for chunk in chunks]
+    if types[at : at + 2] != ["COMMA", "NP"] or at == 0 or types[at - 1] != "NP":
+        return False
+    first = last = at
+    while types[max(0, first - 2) : first] == ["COMMA", "NP"]:
+        first -= 2
+    while types[last + 2 : last + 4] == ["COMMA", "NP"]:
+        last += 2
+    last += types[last + 2 : last + 4] == ["COMMA", "AND"]
+    return last > first or types[last + 2 : last + 4] == ["AND", "NP"]
 
 
 def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentence:
