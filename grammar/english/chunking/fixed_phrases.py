@@ -70,10 +70,11 @@ class FixedPhraseChunker(JointChunker):
         for phrase in (*_DENIALS, *self._denied_circumstances(at)):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase:
-                if self.norms[end] in IS_FORMS and self.norms[end] != "'s" and self.nouns.starts(end + 1):
+                there = self.norms[end + 1 : end + 2] == ["there"]  # 'never is there a cup on it'
+                if self.norms[end] in IS_FORMS and self.norms[end] != "'s" and self.nouns.starts(end + 1 + there):
                     past = self.norms[end] in ("was", "were")
                     self._denied_be = VerbGroup("be", "be", "finite", positive=False, past=past)
-                    return end + 1
+                    return end + 1 + there
                 if self.norms[end] in MODALS or self.norms[end] in ("do", "does", "is", "are"):
                     self._denied = MODALS.get(self.norms[end], "must")
                     return end + 1

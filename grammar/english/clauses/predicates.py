@@ -206,7 +206,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
             flat_parts[i + 1] = replace(following, value=predicate.value, span=union(predicate.span, following.span))
             i += 1
             continue
-        found.append(predicate)
+        opening = bool(found) and _tells_opening(found[-1], predicate)
+        found += [p for a in predicate.arguments for p in a.predicates] if opening else [predicate]
         i += 1
     found = [replace(p, relation="near") if p.relation == "by" else p for p in found]
     return tuple(checked(found)) if check else tuple(found)
@@ -453,8 +454,6 @@ def checked(found: list[Predicate], phrase: NounPhrase | None = None) -> list[Pr
                 kept.append(predicate)
                 continue
             misunderstood(predicate.span, f"'{predicate.relation}' does not say where something is here")
-            continue
-        if kept and _tells_opening(kept[-1], predicate):
             continue
         kept.append(predicate)
     return kept

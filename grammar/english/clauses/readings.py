@@ -95,7 +95,7 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
 
 @dataclass(frozen=True, slots=True)
 class _Proposition:
-    """What a predicate says of two things, which are known by their places in the text; None where there is none."""
+    """A relation of two things, which are known by their places in the text; None where there is none."""
 
     relation: str
     first: int | None
@@ -106,7 +106,7 @@ class _Proposition:
 
 @dataclass(frozen=True, slots=True)
 class _Said:
-    """What a reading says, with the places of its pronouns."""
+    """Propositions of a reading, with the places of its pronouns."""
 
     spans: list[tuple[Span, _Proposition]]
     all: set[_Proposition]
@@ -133,8 +133,8 @@ class _Said:
             if predicate.reversed:
                 firsts, ends = ends, firsts
             value = predicate.value.word if predicate.value is not None else predicate.part or ""
-            for first in [phrase.span[0] for phrase in firsts] or [None]:
-                for second in [phrase.span[0] for phrase in ends] or [None]:
+            for first in _places(firsts):
+                for second in _places(ends):
                     sign = positive and predicate.positive
                     spans.append((predicate.span, _Proposition(predicate.relation, first, second, value, sign)))
         return _Said(spans, {proposition for _, proposition in spans}, pronouns, odd)
@@ -189,6 +189,11 @@ def _is_unlike(phrase: NounPhrase) -> bool:
     first, *rest = phrase.members or (phrase,)
     bare = (p for p in rest if p.determiner is None and p.owner is None and p.count is None)
     return first.determiner is not None and any(p.plural or p.pronoun == "one" for p in bare)
+
+
+def _places(phrases: list[NounPhrase]) -> list[int | None]:
+    """Return where phrases begin, or None alone."""
+    return [phrase.span[0] for phrase in phrases] or [None]
 
 
 def _things(phrase: NounPhrase) -> Iterator[NounPhrase]:
