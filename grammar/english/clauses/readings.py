@@ -14,15 +14,13 @@ from deixis.grammar.english.chunking.chunk import Chunk
 from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence, Span
 
 MAX_OTHER_JOINTS = 6
-"""Number of joints of a sentence that are read otherwise."""
-_OTHERWISE = {"COMMA": ("CUT", "AND"), "AND": ("CUT", "COMMA")}
-"""Types as which a joint is read too."""
+"""Number of joints of a sentence that are read as the end of a clause."""
 _GAPS = frozenset({"between", "among"})
 """Relations to at least two things."""
 
 
 def other_joints(chunks: list[Chunk]) -> Iterator[tuple[list[Chunk], bool]]:
-    """Yield the chunks of a sentence with one joint read otherwise.
+    """Yield the chunks of a sentence with one comma or *and* as the end of a clause.
 
     Parameters
     ----------
@@ -32,14 +30,13 @@ def other_joints(chunks: list[Chunk]) -> Iterator[tuple[list[Chunk], bool]]:
     Yields
     ------
     tuple of (list of Chunk, bool)
-        Copy of the chunks, in which a comma or a conjunction has another type; True if it is a conjunction.
+        Copy of the chunks in which one joint ends a clause; True if the joint is a conjunction.
     """
-    joints = [i for i, chunk in enumerate(chunks) if chunk.type in _OTHERWISE and not _in_list(chunks, i)]
+    joints = [i for i, chunk in enumerate(chunks) if chunk.type in ("COMMA", "AND") and not _in_list(chunks, i)]
     for i in joints[:MAX_OTHER_JOINTS]:
-        for kind in _OTHERWISE[chunks[i].type]:
-            copies = [replace(chunk) for chunk in chunks]
-            copies[i].type = kind
-            yield copies, chunks[i].type == "AND"
+        copies = [replace(chunk) for chunk in chunks]
+        copies[i].type = "CUT"
+        yield copies, chunks[i].type == "AND"
 
 
 def _in_list(chunks: list[Chunk], at: int) -> bool:
