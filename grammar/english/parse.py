@@ -18,6 +18,7 @@ from deixis.grammar.english.clauses.assemble import Assembly, Found
 from deixis.grammar.english.clauses.build import Builder
 from deixis.grammar.english.clauses.built import Built, notes
 from deixis.grammar.english.clauses.joints import Segment, classify, segments
+from deixis.grammar.english.clauses.readings import other_joints, settled
 from deixis.grammar.english.clauses.rewriting import rewritten
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.tokens import (
@@ -134,15 +135,21 @@ def _place_of_list(
 def _sentence(
     text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...]
 ) -> Sentence:
-    """Parse a sentence; where the parse is doubtful, try words that were taken as nouns as verbs."""
+    """Parse a sentence in several ways: words that were taken as nouns as verbs, then each joint read otherwise."""
     best, chunks = _parsed(text, raw, words, nouns, lead, frozenset())
     cost = _cost(best)
     note = best.fragment is not None
     if cost and not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
         for verbs in possible_verbs(chunks, words, nouns):
-            other, _ = _parsed(text, raw, words, nouns, lead, verbs)
+            other, other_chunks = _parsed(text, raw, words, nouns, lead, verbs)
             if _cost(other) + MIN_GAIN <= cost or (note and _cost(other) < cost and other.fragment is None):
-                best, cost = other, _cost(other)
+                best, chunks, cost = other, other_chunks, _cost(other)
+    if not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
+        others = (
+            (_parsed(text, raw, words, nouns, lead, frozenset(), joined)[0], in_conjunction)
+            for joined, in_conjunction in other_joints(chunks)
+        )
+        best = settled(best, (other for other in others if _cost(other[0]) <= cost))
     return best
 
 
@@ -155,9 +162,9 @@ def _cost(sentence: Sentence) -> int:
 
 def _parsed(
     text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...],
-    verbs: frozenset[int],
+    verbs: frozenset[int], joined: list[Chunk] | None = None,
 ) -> tuple[Sentence, list[Chunk]]:  # fmt: skip
-    """Parse a sentence whose words at ``verbs`` are verbs; return its chunks as well."""
+    """Parse a sentence whose words at ``verbs`` are verbs, or one with given chunks; return its chunks as well."""
     unknown: list[Misunderstood] = []
     foreign = False
     found_chunks: list[Chunk] = []
@@ -172,7 +179,7 @@ def _parsed(
                 Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
             )
         elif not raw.heading:
-            found_chunks = Chunker(words, nouns, verbs).run()
+            found_chunks = Chunker(words, nouns, verbs).run() if joined is None else joined
             chunks = rewritten([replace(chunk) for chunk in found_chunks], text)
             assembly.hedges = [
                 (chunk.span[0], chunk.value)

@@ -193,6 +193,7 @@ class Sentence:
     heading: bool = False
     viewpoint: Viewpoint | None = None  # 'facing the bed, …', 'from the door, …': holds of the whole sentence
     guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the fragment was parsed
+    contested: frozenset[Span] = frozenset()  # predicates that not all good readings have (readings.py)
 
     @property
     def understood(self) -> float:

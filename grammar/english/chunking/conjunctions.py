@@ -61,6 +61,8 @@ class JointChunker(VerbChunker):
             return Chunk("ADVERB", at, at + 1, norm)  # 'the neck, not yet glued, …'
         if norm == "whose":
             return Chunk("WHOSE", at, at + 1)
+        if norm == "once" and previous == "REL":
+            return Chunk("ADVERB", at, at + 1, norm)  # 'the seal that once hung from it'
         if norm in ("where", "how", "why") or (norm == "when" and after in IS_FORMS):
             return Chunk(
                 "WHERE" if norm == "where" and (after in IS_FORMS or after in MODALS) else "SUB", at, at + 1, norm
@@ -68,7 +70,7 @@ class JointChunker(VerbChunker):
         if norm == "there" and (
             after in IS_FORMS
             or (after == "used" and self.norms[at + 2] == "to")
-            or after in ("'ll", "should", "must", "will", "can", "may", "might", "shall")
+            or after in ("'ll", "should", "must", "will", "can", "could", "may", "might", "shall", "would")
             or (previous in FINITE and at == 1)
             or (after in _THERE_STANDS and self._previous() in JOINT_TYPES | {"", "ADVERB"})
         ):

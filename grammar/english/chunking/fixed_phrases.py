@@ -22,7 +22,13 @@ from deixis.grammar.english.vocabulary.function_words import (
 )
 from deixis.grammar.english.vocabulary.idioms import IDIOMS
 from deixis.grammar.english.vocabulary.nouns import PARTS
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, Preposition, places_alone, prepositions
+from deixis.grammar.english.vocabulary.relation_words import (
+    CIRCUMSTANCES,
+    DIRECTION_WORDS,
+    Preposition,
+    places_alone,
+    prepositions,
+)
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import FIND_VERBS, PUT_VERBS
 
@@ -64,10 +70,11 @@ class FixedPhraseChunker(JointChunker):
         for phrase in (*_DENIALS, *self._denied_circumstances(at)):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase:
-                if self.norms[end] in IS_FORMS and self.norms[end] != "'s" and self.nouns.starts(end + 1):
+                there = self.norms[end + 1 : end + 2] == ["there"]  # 'never is there a cup on it'
+                if self.norms[end] in IS_FORMS and self.norms[end] != "'s" and self.nouns.starts(end + 1 + there):
                     past = self.norms[end] in ("was", "were")
                     self._denied_be = VerbGroup("be", "be", "finite", positive=False, past=past)
-                    return end + 1
+                    return end + 1 + there
                 if self.norms[end] in MODALS or self.norms[end] in ("do", "does", "is", "are"):
                     self._denied = MODALS.get(self.norms[end], "must")
                     return end + 1
@@ -292,7 +299,7 @@ class FixedPhraseChunker(JointChunker):
         for i in range(at + 1, at + 6):
             norm = self.norms[i]
             general = norm in _OCCASIONS and self.norms[at + 1] in _GENERAL
-            if (norm in _CIRCUMSTANCES or general) and not self.nouns.is_noun(i + 1):
+            if (norm in CIRCUMSTANCES or general) and not self.nouns.is_noun(i + 1):
                 if self.norms[i + 1 : i + 3] == ["of", "thumb"]:
                     return i + 3
                 return None if self.norms[i + 1] in ("of", "'s", "to") else i + 1
@@ -455,13 +462,8 @@ class FixedPhraseChunker(JointChunker):
         return Chunk("ADV", at, i, Relator(Preposition(order, "row")))
 
 
-_CIRCUMSTANCES = word_set(
-    "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
-)
-"""Nouns that name no place after *in*, *at*, *as*, *on* and *under*."""
-
-_OCCASIONS = word_set("setting settings case cases event instance situation situations household households")
-"""Nouns that name no place if they are general: *in a formal setting*, not *in the setting*."""
+_OCCASIONS = word_set("case cases event instance situation situations household households")
+"""Nouns that name no place if they are general: *in a rare case*, not *in the case*."""
 
 _GENERAL = word_set("a an any some many most more few other certain every each no this that which both all")
 

@@ -53,7 +53,10 @@ class VerbChunker(RelatorChunker):
         if self._previous() == "AND" and (shared := self._second_verb(at)) is not None:
             return shared
         i, adverbs, modal, positive, past = at, [], None, True, False
+        begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
         while (self.norms[i] in ADVERBS | HEDGES and self.norms[i] != "about") or self.norms[i] == "never":
+            if begins and self.norms[i] == "there" and self.norms[i + 1] in IS_FORMS | MODALS.keys():
+                return None  # 'perhaps there is a spoon'
             if self.norms[i] == "never":
                 positive = False
             else:
@@ -256,7 +259,7 @@ class VerbChunker(RelatorChunker):
                 kind = "FIND" if norm in FIND_VERBS else "PUT" if norm in PUT_VERBS or form.kind == "posture" else "DO"
                 return Chunk(kind, at, end, found)
             return self._finite(at, end, found)
-        if norm == "left" and helped and self.nouns.is_determiner(end):
+        if norm == "left" and helped and self.nouns.is_determiner(end + (self.norms[end] in _RECEIVERS)):
             return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past"))
         if norm == "left" and self._is_left_behind(i):
             return Chunk("PART", at, end, found)
@@ -578,7 +581,7 @@ class VerbChunker(RelatorChunker):
             i += self.norms[i + 1] in PARTICLES
             return self.nouns.starts(i + 1) or self.norms[i + 1] in prepositions()
         if self.norms[i] == "left":
-            return self.nouns.is_determiner(i + 1)
+            return self.nouns.is_determiner(i + 1 + (self.norms[i + 1] in _RECEIVERS))  # 'have left you a cake'
         return form.form in ("past", "participle") and self.norms[i] != "set"
 
     def _goes_on(self, at: int) -> bool:
@@ -591,6 +594,7 @@ class VerbChunker(RelatorChunker):
 _RARELY = word_set("rarely seldom hardly scarcely")
 
 _GETTING = word_set("get gets got getting")
+_RECEIVERS = word_set("you me him her us them")
 """Verbs that make a passive, as *be* does."""
 
 _TOLD = word_set("it they he she there")

@@ -570,9 +570,13 @@ class Assembly:
         thing = verb.thing
         assert thing is not None
         phrase = thing.phrase
-        here = (*thing.extra, *(() if phrase.members else phrase.predicates))
-        if here and not phrase.members:
+        *before, last = phrase.members or (phrase,)
+        shared = () if any(member.predicates for member in before) else last.predicates
+        if shared and before:  # 'I keep the jug and the bowl on a tray': both are on it
+            phrase = replace(phrase, members=(*before, replace(last, predicates=())))
+        elif shared:
             phrase = replace(phrase, predicates=())
+        here = (*thing.extra, *shared)
         return replace(verb, thing=None, said=(Said(here), *verb.said) if here else verb.said), Noun(phrase)
 
     def _clause(

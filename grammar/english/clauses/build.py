@@ -35,7 +35,14 @@ from deixis.grammar.english.tree import (
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, SURFACES, last_word
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NEVER_PLACES, NOT_PLACES, PLACE_NOUNS
+from deixis.grammar.english.vocabulary.relation_words import (
+    ARRANGEMENTS,
+    CIRCUMSTANCES,
+    DIRECTION_WORDS,
+    NEVER_PLACES,
+    NOT_PLACES,
+    PLACE_NOUNS,
+)
 from deixis.grammar.english.vocabulary.tables import word_set
 
 
@@ -415,7 +422,7 @@ class Builder(Transformer[Any, Built]):
         if relation == "material":
             word = Adjective(noun.phrase.head or "unknown", "material", Degree.PLAIN, noun.phrase.span)
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
-        if noun.phrase.head.rpartition(" ")[2] in _ARRANGEMENTS and relation == "inside":
+        if noun.phrase.head.rpartition(" ")[2] in ARRANGEMENTS | CIRCUMSTANCES and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return (Predicate("there", (), span, positive=relator.positive), *extra)
         manner = relation == "by" and noun.phrase.head in _MANNERS
@@ -726,7 +733,7 @@ def _places(relator: Relator, places: tuple[NounPhrase, ...], span: Span) -> lis
 def _positioned(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     """Return the predicate of a place; *from the left* is an ordinal without its number."""
     relation = relator.preposition.relation
-    if relation == "from" and is_place(phrase) and phrase.of is None:
+    if relation == "from" and is_place(phrase) and phrase.of is None and phrase.determiner not in ("a", "an"):
         side = (
             phrase.head
             if phrase.head != "end" and phrase.head != "side"
@@ -794,10 +801,6 @@ _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edg
 
 
 _LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
-_ARRANGEMENTS = word_set(
-    "triangle semicircle pattern fan pyramid arc spiral diamond grid formation heap"
-    " setting arrangement layout style fashion manner order"
-)
 _QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
 _FASTENING = word_set(
     "attach fix secure fasten screw bolt nail tape glue tie strap clip clamp pin connect join wedge press push wrap"

@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SURFAC
 from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
+from deixis.ontology.graph.claims import PLACES
 
 DIRECTION_RELATIONS = word_set(
     "corner left right top bottom above below in_front behind top_left top_right bottom_left bottom_right under inside"
@@ -205,7 +206,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
             flat_parts[i + 1] = replace(following, value=predicate.value, span=union(predicate.span, following.span))
             i += 1
             continue
-        found.append(predicate)
+        opening = bool(found) and _tells_opening(found[-1], predicate)
+        found += [p for a in predicate.arguments for p in a.predicates] if opening else [predicate]
         i += 1
     found = [replace(p, relation="near") if p.relation == "by" else p for p in found]
     return tuple(checked(found)) if check else tuple(found)
@@ -418,6 +420,10 @@ def arguments_of(relation: str, phrase: NounPhrase) -> tuple[NounPhrase, ...]:
     return (phrase,)
 
 
+_SEATS = frozenset({"place", "seat", "chair", "end", "side", ""})
+"""Nouns after *at* that are a place of a thing as a whole: *the menu lies open at each place*."""
+
+
 def checked(found: list[Predicate], phrase: NounPhrase | None = None) -> list[Predicate]:
     """Return predicates without the marks of participles.
 
@@ -451,6 +457,16 @@ def checked(found: list[Predicate], phrase: NounPhrase | None = None) -> list[Pr
             continue
         kept.append(predicate)
     return kept
+
+
+def _tells_opening(state: Predicate, following: Predicate) -> bool:
+    """Return True for the place where a thing is open or closed: *a book open at page 40*, *a box open at the back*."""
+    apart = state.relation not in ("open", "closed") or following.span[0] > state.span[1] + 1
+    if apart or following.measure is not None:
+        return False
+    nouns = {last_word(argument.head) for argument in following.arguments}
+    where = following.relation == "at" and bool(nouns) and nouns.isdisjoint(SURFACES | _SEATS)
+    return where or (following.relation in PLACES | {"top", "bottom"} and not nouns)
 
 
 def _state(lemma: str, marker: Predicate) -> Predicate:

@@ -55,6 +55,9 @@ _FOUND_OR_PUT = frozenset(
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
+_NAMES = frozenset({"NP", "ADVERB", "ADJP", "CUT", "NOT", "UNKNOWN"})
+"""Chunks in parentheses that say no place: *(A)*, *(mice!)*, *(not the blue one)*."""
+
 _Run = tuple[int, Chunk | None]
 """End of a run of chunks, and the chunk that is put in its place, if any."""
 
@@ -94,7 +97,7 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
     """Return the chunks with what parentheses say of the noun before them at the end, as a phrase of its own.
 
     *Set the knife (with its blade to the left) beside the plate* is read as *set the knife beside the plate; the knife
-    with its blade to the left*.
+    with its blade to the left*. A name in parentheses, or a word said in passing, is left out.
     """
     kept: list[Chunk] = []
     after: list[Chunk] = []
@@ -112,6 +115,9 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             named = Chunk("NP", of.start, of.end, noun, of.span)
             after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
             i = (closing or i) + 1
+            continue
+        if said and {c.type for c in inside} <= _NAMES and sum(c.type == "NP" for c in inside) == 1:
+            i = (closing or i) + 1  # 'the long panels (A) go …', 'under a tea towel (mice!)'
             continue
         kept.append(chunk)
         i += 1
@@ -219,7 +225,9 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
-    """Find for whom a thing is: *put out a bowl for you*, *put the glass for the guest right of the cup*."""
+    """Find for whom a thing is: *put out a bowl for you*, *left you a cake*, *the glass for the guest right of it*."""
+    if type_at(chunks, at - 1) in ("TVERB", "PUT") and type_at(chunks, at + 1) == "NP" and chunks[at].type == "NP":
+        return (at + 1, None) if chunks[at].value.pronoun in PERSONS and not chunks[at].value.head else None
     if not (chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and at > 0):
         return None
     person = type_at(chunks, at + 1) == "NP" and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}

@@ -42,6 +42,11 @@ CONDITION = re.compile(
     re.IGNORECASE,
 )
 """Beginning of a sentence that holds under a condition: *if …*, *in the event of …, …*, *should it rain, …*."""
+_INSERTED_CONDITION = re.compile(
+    r"[^,;:.()]*[,(]\s*((?:but\s+|and\s+)?(?:only\s+|even\s+)?(?:if|unless|whenever|when|in\s+case|provided)\b[^,;:.()]*)[,)]",
+    re.IGNORECASE,
+)
+"""Condition between the subject of a clause and its place: *The spoon, if there is soup, lies …*."""
 UNSURE_RELATIVE = re.compile(
     r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|(?<!,\swhich\s)should\b|might\b|may\b|could\b|would\b)",
     re.IGNORECASE,
@@ -203,3 +208,25 @@ def condition_of(sentence: Sentence) -> str | None:
     if not WHILE_DOING.match(sentence.text) and not CONDITION.match(sentence.text):
         return None
     return " ".join(sentence.text.split(",", 1)[0].split())
+
+
+def inserted_condition(clause: str) -> str | None:
+    """Return the condition that stands between a subject and what is said of it: *The spoon, if there is soup, …*.
+
+    Parameters
+    ----------
+    clause
+        Text of a clause from its subject on.
+
+    Returns
+    -------
+    str or None
+        Text of the condition with single spaces, or None for a clause without one.
+
+    Examples
+    --------
+    >>> inserted_condition("The spoon, if there is soup, lies next to the knife")
+    'if there is soup'
+    """
+    match = _INSERTED_CONDITION.match(clause)
+    return None if match is None else " ".join(match[1].split())

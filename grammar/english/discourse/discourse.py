@@ -27,6 +27,7 @@ from deixis.grammar.english.discourse.commitment import (
     UNREAL,
     UNSURE,
     condition_of,
+    inserted_condition,
 )
 from deixis.grammar.english.discourse.drafts import RARE, Draft, Qualification
 from deixis.grammar.english.discourse.entities import Entity, Role
@@ -134,6 +135,7 @@ class Discourse(Statements):
                 continue
             if _can_be_verb(part):
                 self.how = self._guessed(Guess.BARE)
+            self.how = replace(self.how, condition=self._inserted_condition(part, part.predicates) or self.condition)
             subject = self._introduce(replace(part, predicates=()))
             if not self.story and PAST_RELATIVE.search(self.text[slice(*part.span)]):
                 self.how = replace(self.how, past=True)
@@ -209,7 +211,7 @@ class Discourse(Statements):
         self.how = Qualification(
             clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
             optional=uncertain or "optionally" in clause.hedges or (modal == "can" and positive and weight == 1.0),
-            condition=clause.condition or self.condition,
+            condition=clause.condition or self.condition or self._inserted_condition(clause.subject, clause.predicates),
             past=self._is_past(clause), uncertain=uncertain, guesses=clause.guesses,
         )  # fmt: skip
         subject = clause.subject
@@ -345,6 +347,12 @@ class Discourse(Statements):
             self._alternative_to_the_last(first, entity)
         if modal in OBLIGED:
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _inserted_condition(self, subject: NounPhrase | None, predicates: tuple[Predicate, ...]) -> str | None:
+        """Return the condition between a subject and what is said of it."""
+        if subject is None or not predicates or predicates[0].span[0] < subject.span[0]:
+            return None
+        return inserted_condition(self.text[subject.span[0] : predicates[-1].span[1]])
 
     def _is_past(self, clause: Clause) -> bool:
         """Return True for what was so, and need not be so now: *my mother always kept it here*."""

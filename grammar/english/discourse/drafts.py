@@ -128,6 +128,9 @@ class Drafting:
         start, end = self.how.span
         if any(start <= use.span[0] and use.span[1] <= end for use in self.references.doubtful[-3:]):
             how = replace(how, guesses=how.guesses | {Guess.PRONOUN})
+        close = {guess for span, guess in self.references.guesses[-3:] if start <= span[0] and span[1] <= end}
+        if close:
+            how = replace(how, guesses=how.guesses | close)
         if is_doubtful(how.guesses):
             how = replace(how, uncertain=True, optional=True, weight=min(how.weight, 0.5))
         draft = Draft(relation, subjects, arguments, how, value, metres)

@@ -11,7 +11,7 @@ from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.references import POLES, REGIONS, Focus, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
-from deixis.grammar.english.vocabulary.nouns import PARTS, SURFACES, VESSELS, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
 from deixis.ontology.graph.claims import PLACES
 
 SUPERLATIVES = {
@@ -42,7 +42,8 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     )
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
     own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
-    return (around and (bare or (wide and beside))) or flat or amid or own
+    stuff = noun in SUBSTANCES and phrase.determiner is None and phrase.owner is None  # 'in water behind the counter'
+    return (around and (bare or (wide and beside))) or flat or amid or own or stuff
 
 
 COMPARTMENTS = frozenset(

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, is_one_thing
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
 from deixis.grammar.english.vocabulary.nouns import (
@@ -122,6 +123,7 @@ class References:
     surface: Entity | None = None
     named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
     doubtful: list[PronounUse] = field(default_factory=list)
+    guesses: list[tuple[Span, Guess]] = field(default_factory=list)  # phrases whose antecedent is a close call
     renamed: list[Entity] = field(default_factory=list)  # entities with aliases
     _by_last_word: dict[str, list[Entity]] = field(default_factory=dict)
     _indexed: int = 0  # entities that the index holds
@@ -466,7 +468,7 @@ class References:
         Returns
         -------
         Entity or None
-            Group with a noun; None if the text has none yet.
+            Group with a noun; None if the text has none yet, or if the sentence names several things since.
         """
         if besides is not None and besides.group is not None:
             return besides.group
@@ -477,8 +479,15 @@ class References:
                 group = entity.itself if entity.itself.members else entity.itself.group
                 if group is not None and group.noun:
                     return group
+                if entity.plural and focus.sentence == self.sentence:
+                    return None  # 'the bolts are stacked, the heaviest at the bottom'
         late = (e for e in reversed(self.entities) if e.born >= self.sentence - MAX_SENTENCES_TO_GROUP)
         return next((e for e in late if e.members and e.noun), None)
+
+    def _is_fresh(self, group: Entity) -> bool:
+        """Return True if a clause of this sentence or the one before is about a group or a member of it."""
+        late = (e.itself for f in self.recent if f.sentence >= self.sentence - 1 for e in (f.subject, *f.others) if e)
+        return any(entity is group or entity.group is group for entity in late)
 
     # Pronouns ---------------------------------------------------------------------------------------------------
 
@@ -496,7 +505,10 @@ class References:
         if word == "they" and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("they", "both", "all", "each", "these", "those"):
-            return self._plural(relation, besides, word == "both")
+            several = self._plural(relation, besides, word == "both")
+            if several is not None and word == "they" and relation is None and not self._is_fresh(several.itself):
+                self.guesses.append((phrase.span, Guess.THEY))
+            return several
         if word in ("it", "itself", "they") and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("it", "this", "that", "itself"):
@@ -592,7 +604,11 @@ class References:
         )
         if some and phrase.of is not None and phrase.of.head and phrase.of.plural:
             return self._new(replace(phrase, head=phrase.of.head, of=None), Role.THING)  # 'two of the beads'
-        group = group or self.last_group(besides)
+        if group is None:
+            group = self.last_group(besides)
+            told_apart = bool(phrase.adjectives) or phrase.pronoun is not None
+            if group is not None and told_apart and not self._is_fresh(group):
+                self.guesses.append((phrase.span, Guess.ELLIPSIS))
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
         second = relation is None and phrase.pronoun == "other" and phrase.determiner == "the" and not phrase.plural
         if further and group is not None and group.noun and phrase.of is None:

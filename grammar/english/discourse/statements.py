@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
 from deixis.grammar.english.discourse.mentions import SUPERLATIVES
 from deixis.grammar.english.discourse.references import POLES
@@ -49,6 +50,8 @@ class Statements(Relations):
     """Reader of predicates."""
 
     def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        if predicate.span in self.sentences[self.how.sentence].contested:
+            self.how = self._guessed(Guess.CONTESTED)
         relation = predicate.relation
         part_said = predicate.subject_part.head if predicate.subject_part is not None else ""
         self.part = last_word(subject.noun if subject.role is Role.PART else part_said)

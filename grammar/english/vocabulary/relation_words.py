@@ -8,6 +8,15 @@ from functools import cache
 from deixis.grammar.english.tree import Degree
 from deixis.grammar.english.vocabulary.tables import inverted, table, word_set
 
+ARRANGEMENTS = word_set(
+    "triangle semicircle pattern fan pyramid arc spiral diamond grid formation heap arrangement layout order"
+)
+"""Nouns after *in* that say how several things lie."""
+CIRCUMSTANCES = word_set(
+    "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
+    " setting settings"
+)
+"""Nouns that name no place after *in*, *at*, *as*, *on* and *under*: *in a formal setting*."""
 NOT_PLACES = word_set(
     "monday tuesday wednesday thursday friday saturday sunday january february march april june july august september"
     " october november december noon midnight morning evening afternoon schedule fire hurry average purpose sale"

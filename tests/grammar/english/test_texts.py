@@ -12,12 +12,14 @@ TEXTS = Path(__file__).parent / "texts"
 MIN_FOUND, MIN_RIGHT = 0.8, 0.9
 FLOORS = {
     "unseen": (0.75, 0.9), "counters": (0.75, 0.9), "rooms": (0.8, 0.93), "stations": (0.6, 0.82),
-    "visitors": (0.7, 0.8),
+    "visitors": (0.7, 0.8), "arrivals": (0.65, 0.88), "boarders": (0.65, 0.85),
 }  # fmt: skip
 """Smallest shares of found and of right facts of texts that are harder than the others.
 
 Their authors did not know the reader. It was changed afterwards for those of ``unseen.txt``, ``counters.txt``,
-``rooms.txt`` and ``stations.txt``, and never for those of ``visitors.txt``.
+``rooms.txt`` and ``stations.txt``, and never for those of ``visitors.txt``. The texts of ``arrivals.txt`` and
+``boarders.txt`` were written together by an author who knew the reader, before any of them was read; it was changed
+for ``arrivals.txt`` alone.
 """
 
 
