@@ -52,8 +52,9 @@ ABSENT_SHARES, ROUNDS_PER_PLACING = (0.25, 0.12, 0.06, 0.03, 0.0), 3
 share is estimated from above: where absence is improbable at first, each absent object gets a wrong thing, which then
 confirms that few are absent."""
 
-NEGLIGIBLE = 1e-3
-"""Share of the likeliest candidate below which a candidate does not count in a message."""
+NEGLIGIBLE, UNCHANGED = 1e-3, -11.5
+"""Share of the likeliest candidate below which a candidate does not count in a message; and log belief, relative to the
+likeliest candidate, below which the messages about a candidate stay as they are."""
 
 PROJECTIONS, COMPONENTS = 16, 6
 """Random projections of each table, and principal components of the projections, by which things are divided."""
@@ -232,7 +233,7 @@ class CoarseToFine:
                     break
                 if places is not None and placings < len(ABSENT_SHARES) and done % ROUNDS_PER_PLACING == 0:
                     seen = things[candidates.cells]
-                    fits = _fits_of_places(places, seen, _cavities(belief, facts, slots), slots)
+                    fits = self._fits_of_places(seen, _cavities(belief, facts, slots))
                     expected = max(float(share[:, -1].sum()), ABSENT_SHARES[placings] * n1)
                     problem = placed_at(self.problem, places, fits, expected)
                     candidates.unary[:, -1] = problem.unary[:, -1]
@@ -240,6 +241,25 @@ class CoarseToFine:
                     placings += 1
                 facts = _sent(facts, belief, absent, candidates.cells, weights, slots, pool)
         return share, facts, problem
+
+    def _fits_of_places(self, things: NDArray[np.int64], cavity: Messages) -> NDArray[np.float32]:
+        """Return the logarithm of the likelihood of each object's facts at each place, (n1, g).
+
+        ``things`` (n1, K) are the candidates, ``cavity`` (2m, K) the messages about the other object of each slot.
+        """
+        from scipy.sparse import csr_matrix
+
+        assert self.places is not None
+        fits = np.zeros((len(things), self.places.shape[1]), np.float32)
+        for kind in np.unique(self.slots.kind):
+            here = np.flatnonzero(self.slots.kind == kind)
+            rows, columns = np.nonzero(cavity[here, :-1])
+            seen = things[self.slots.other[here][rows], columns]
+            shape = len(here), self.places.shape[2]
+            messages: csr_matrix = csr_matrix((cavity[here[rows], columns], (rows, seen)), shape=shape)
+            likelihoods = messages @ self.places[kind].T + cavity[here, -1:]
+            fits += self.adder[:, here] @ np.log(likelihoods)
+        return fits
 
     def _likelihoods(self, order: NDArray[np.int64]) -> NDArray[np.float32]:
         """Return each table's likelihoods in the order of the things, (k, n2, n2), divided by the largest one.
@@ -364,27 +384,6 @@ def _cavities(belief: Messages, facts: Messages, slots: _Slots) -> Messages:
     return cavity
 
 
-def _fits_of_places(
-    places: NDArray[np.float32], things: NDArray[np.int64], cavity: Messages, slots: _Slots
-) -> NDArray[np.float32]:
-    """Return the logarithm of the likelihood of each object's facts at each place, (n1, g).
-
-    ``things`` (n1, K) are the candidates, ``cavity`` (2m, K) the messages about the other object of each slot.
-    """
-    from scipy.sparse import csr_matrix
-
-    n1, n2 = len(things), places.shape[2]
-    fits = np.zeros((n1, places.shape[1]), np.float32)
-    for kind in np.unique(slots.kind):
-        here = np.flatnonzero(slots.kind == kind)
-        rows, columns = np.nonzero(cavity[here, :-1])
-        seen = things[slots.other[here][rows], columns]
-        messages: csr_matrix = csr_matrix((cavity[here[rows], columns], (rows, seen)), shape=(len(here), n2))
-        likelihoods = messages @ places[kind].T + cavity[here, -1:]
-        np.add.at(fits, slots.owner[here], np.log(likelihoods))
-    return fits
-
-
 def _sent(
     facts: Messages,
     belief: Messages,
@@ -417,7 +416,7 @@ def send_messages(sent, facts, belief, absent, cells, weights, slots, first, end
     facts
         The present log messages, shape (2m, K).
     belief
-        Log beliefs of the objects, shape (n1, K).
+        Log beliefs of the objects, shape (n1, K), 0 for the likeliest candidate.
     absent
         Likelihood of the slot's fact if the slot's object is absent, by the other's candidate, shape (2m, K).
     cells
@@ -429,33 +428,43 @@ def send_messages(sent, facts, belief, absent, cells, weights, slots, first, end
     first, end
         The part of ``slots.order`` to compute.
     """
-    width = facts.shape[1]
-    last = width - 1
-    message, result = np.empty(width, np.float32), np.empty(width, np.float32)
-    kinds = len(weights) // 2
+    last, kinds = facts.shape[1] - 1, len(weights) // 2
+    message, result = np.empty(last + 1, np.float32), np.empty(last + 1, np.float32)
+    senders, receivers, here = np.empty(last, np.int64), np.empty(last, np.int64), np.empty(last, np.int64)
     for at in range(first, end):
         s = slots.order[at]
         i, j, t, kind = slots.owner[s], slots.other[s], slots.twin[s], slots.kind[s]
-        top = np.float32(-np.inf)
-        for b in range(width):
-            message[b] = belief[j, b] - facts[t, b]
-            top = max(top, message[b])
-        from_absence = np.float32(0.0)
-        for b in range(width):
-            message[b] = np.exp(message[b] - top)
-            from_absence += message[b] * absent[s, b]
-        for a in range(last):
-            result[a] = message[last] * absent[t, a]
-        result[last] = from_absence
-        turned = weights[kind - kinds if kind >= kinds else kind + kinds]  # rows are the things of the other object
+        n_senders, n_receivers = 0, 0
+        message[last] = belief[j, last] - facts[t, last]
+        top = message[last]
         for b in range(last):
-            if message[b] >= NEGLIGIBLE:
+            if belief[j, b] >= UNCHANGED:
+                senders[n_senders] = b
+                n_senders += 1
+                message[b] = belief[j, b] - facts[t, b]
+                top = max(top, message[b])
+        message[last] = np.exp(message[last] - top)
+        for a in range(last):
+            if belief[i, a] >= UNCHANGED:
+                receivers[n_receivers], here[n_receivers] = a, cells[i, a]
+                result[n_receivers] = message[last] * absent[t, a]
+                n_receivers += 1
+        from_absence = message[last] * absent[s, last]
+        turned = weights[kind - kinds if kind >= kinds else kind + kinds]  # rows are the things of the other object
+        for sender in range(n_senders):
+            b = senders[sender]
+            weight = np.exp(message[b] - top)
+            from_absence += weight * absent[s, b]
+            if weight >= NEGLIGIBLE:
                 row = turned[cells[j, b]]
-                for a in range(last):
-                    result[a] += message[b] * row[cells[i, a]]
-        top = np.float32(1e-30)
-        for a in range(width):
+                for a in range(n_receivers):
+                    result[a] += weight * row[here[a]]
+        top = max(from_absence, np.float32(1e-30))
+        for a in range(n_receivers):
             top = max(top, result[a])
-        for a in range(width):
+        sent[s] = facts[s]
+        for a in range(n_receivers):
             log_message = np.log(max(result[a] / top, np.float32(1e-30)))
-            sent[s, a] = DAMPING * facts[s, a] + (1.0 - DAMPING) * log_message
+            sent[s, receivers[a]] = DAMPING * facts[s, receivers[a]] + (1.0 - DAMPING) * log_message
+        log_message = np.log(max(from_absence / top, np.float32(1e-30)))
+        sent[s, last] = DAMPING * facts[s, last] + (1.0 - DAMPING) * log_message
