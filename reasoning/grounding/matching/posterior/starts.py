@@ -64,8 +64,8 @@ class Starts:
 
     @property
     def is_large(self) -> bool:
-        """Whether the scene is so large that belief propagation went from coarse to fine."""
-        return self.problem.unary.shape[1] > MIN_COARSE_THINGS
+        """True if belief propagation went from coarse to fine, because the scene is large."""
+        return bool(self.problem.unary.shape[1] > MIN_COARSE_THINGS)
 
     @property
     def beliefs(self) -> Array:
