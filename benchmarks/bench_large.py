@@ -122,6 +122,7 @@ def main() -> None:
         quick = options.quick
         limit = options.limit
         posterior(case(12, 2.5, 0)[0], Deadline.after(2.0))  # compile
+        ladders.warm()
         first = options.seeds
         if options.values:
             _print_values([arm for arm in ARMS if options.only in " ".join(map(str, arm))], first)

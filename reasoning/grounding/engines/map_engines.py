@@ -22,11 +22,13 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole
 from deixis.reasoning.grounding.hypotheses.hypotheses import STATED_SIDES, Side, side_text, weigh
 from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import MIN_COARSE_THINGS
 from deixis.reasoning.grounding.matching.search.exact import exact
 from deixis.reasoning.grounding.matching.search.scalable import scalable
 
-PROOF_SHARE, SEARCH_SHARE = 0.5, 0.8
-"""Shares of the time for a search with a proof, and for a search without one; the rest is for the probabilities."""
+PROOF_SHARE, SEARCH_SHARE, LARGE_SEARCH_SHARE = 0.5, 0.8, 0.4
+"""Shares of the time for a search with a proof, for a search without one, and for that in a large scene, where the
+probabilities need more; the rest is for the probabilities."""
 
 SIMILARITY_SHARE = 0.3
 """Share of the remaining time that the paper's similarity may take."""
@@ -111,7 +113,8 @@ class ScalableEngine:
         Alignment
             The alignment, which is not proved to be the best.
         """
-        found = scalable(evidence.problem, deadline.share(SEARCH_SHARE))
+        is_large = len(evidence.scene.nodes) > MIN_COARSE_THINGS
+        found = scalable(evidence.problem, deadline.share(LARGE_SEARCH_SHARE if is_large else SEARCH_SHARE))
         notes = () if found.finished else ("time limit reached before the search ended",)
         return _answer("scalable", self, evidence, found.assignment, deadline, notes, finished=found.finished)
 

@@ -49,9 +49,10 @@ class Problem:
     allowed
         Matches that a map may make, shape (n1, n2), or one value for all; by default, all.
     places
-        Function that computes the likelihood ratios of a fact with one end at each of g places and the other at each
-        thing, shape (2k, g, n2): the subject at the place, then the object. Absent objects are at such places when
-        marginals are sampled. None where the facts about absent objects count as by chance.
+        Function of the approximate maximum number g of places (by default ``MAX_PLACES``). It computes the likelihood
+        ratios of a fact with one end at each place and the other at each thing, shape (2k, g, n2): the subject at the
+        place, then the object. Absent objects are at such places when marginals are sampled. None where the facts about
+        absent objects count as by chance.
 
     Raises
     ------
@@ -65,7 +66,7 @@ class Problem:
     unary: NDArray[np.float64]
     absent: NDArray[np.float64]
     allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))
-    places: Callable[[], NDArray[np.float32]] | None = None
+    places: Callable[..., NDArray[np.float32]] | None = None
 
     def __post_init__(self) -> None:
         if self.allowed.ndim == 0:  # one value for all matches

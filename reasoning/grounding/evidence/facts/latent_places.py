@@ -20,13 +20,15 @@ from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
 from deixis.reasoning.grounding.matching.problem import MAX_PLACES, MIN_PLACES, PLACES_PER_THING
 
 
-def place_boxes(boxes: NDArray[np.float64]) -> NDArray[np.float64]:
+def place_boxes(boxes: NDArray[np.float64], most: int = MAX_PLACES) -> NDArray[np.float64]:
     """Return boxes on a grid over the centres of some boxes, half a step beyond them, all of the usual size.
 
     Parameters
     ----------
     boxes
         Boxes of the things of a scene, at least one, shape (n2, 2, d).
+    most
+        Approximate maximum number of places.
 
     Returns
     -------
@@ -42,7 +44,7 @@ def place_boxes(boxes: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     centres, extents = boxes.mean(axis=1), np.median(boxes[:, 1] - boxes[:, 0], axis=0)
     low, high = centres[:, :2].min(axis=0), centres[:, :2].max(axis=0)
-    count = min(max(PLACES_PER_THING * len(boxes), MIN_PLACES), MAX_PLACES)
+    count = min(max(PLACES_PER_THING * len(boxes), MIN_PLACES), most)
     side = extents[:2].mean()
     spans = np.maximum(high - low, side)
     longer = max(1.0, math.sqrt(count * spans[0] / spans[1])) if spans.all() else 1.0
@@ -63,6 +65,7 @@ def place_ratios(
     literal: float,
     more_tables: int = 0,
     poses: Poses | None = None,
+    most: int = MAX_PLACES,
 ) -> NDArray[np.float32]:
     """Return the likelihood ratios of facts between an object at each place and each thing.
 
@@ -78,13 +81,15 @@ def place_ratios(
         Number c of tables after those of the facts, about which places say nothing.
     poses
         Poses of the things; None for axes along the sides of the boxes, and no fronts.
+    most
+        Approximate maximum number g of places.
 
     Returns
     -------
     ndarray
         Likelihood ratios, shape (2(k + c), g, n2): the subject at the place, then the object at the place.
     """
-    places, kinds = place_boxes(boxes), len(facts.contents)
+    places, kinds = place_boxes(boxes, most), len(facts.contents)
     tables = kinds + more_tables
     ratios = np.ones((2, tables, len(places), len(boxes)), np.float32)
     there, here = Surroundings.of(places, boxes), Surroundings.of(boxes, boxes, poses=poses)

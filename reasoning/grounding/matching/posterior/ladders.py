@@ -14,10 +14,10 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import count
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.posterior.exchangeable import averaged
@@ -30,8 +30,9 @@ from deixis.reasoning.grounding.matching.posterior.sampling import (
     new_chains,
     sample,
 )
+from deixis.reasoning.grounding.matching.posterior.starts import Starts, starts_of
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem
-from deixis.reasoning.grounding.matching.search.belief_propagation import beliefs_with_places
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import MIN_COARSE_THINGS, CoarseToFine
 
 Array = NDArray[np.float64]
 
@@ -44,9 +45,13 @@ of objects in all chains of a ladder, which may end a ladder before the hottest 
 MIN_COLDNESS = 0.3
 """Coldness at which chains mix within a few sweeps: that of the hottest chain, and of all chains at the start."""
 
+WARM_COLDNESS = 0.7
+"""Coldness of all chains at the start where a ladder cannot have all temperatures: hotter chains lose more of what
+belief propagation found than they find again while they are cooled."""
+
 COOLING_TURNS, COOLING_SWEEPS, COOLING_SHARE = 200, 5, 0.5
-"""Number of turns that cool every chain to its own coldness, sweeps per turn, and share of the time; where the time is
-short, turns are skipped evenly."""
+"""Number of turns that cool every chain from MIN_COLDNESS to its own coldness, sweeps per turn, and share of the time;
+where the time is short, turns are skipped evenly."""
 
 FIRST_SWEEPS = 50
 """Sweeps of the first two parts of a run; the next two parts are twice as long, and so on."""
@@ -62,8 +67,8 @@ BELIEF_DRAWS = 8.0
 
 PROPOSALS_PER_CLOCK_CHECK = 5e4
 
-GUIDE_SHARE = 0.2
-"""Share of the time that the guide may take."""
+GUIDE_SHARE, COARSE_GUIDE_SHARE = 0.2, 0.5
+"""Shares of the time that the guide may take: of dense belief propagation, and of that from coarse to fine."""
 
 CHAINS_SHARE = 0.9
 """Share of the time after the guide that the chains may take; the rest is for comparing them."""
@@ -72,13 +77,21 @@ EVIDENCE_TOLERANCE = 0.2
 """Error of a log evidence, in nats, at which sampling stops."""
 
 
+class Sampled(NamedTuple):
+    """Sampled marginals of n1 objects and n2 things, and what they rest on."""
+
+    marginals: Array  # (n1, n2 + 1): the last column is the probability of absence
+    errors: Array  # (n1,): standard error of each object's marginals, infinite where no chains were compared
+    starts: int  # number of runs of belief propagation that ladders started from
+
+
 def sampled_marginals(
     problem: Compiled,
     groups: tuple[tuple[int, ...], ...],
     deadline: Deadline,
     seed: int,
     places: NDArray[np.float32] | None = None,
-) -> tuple[Array, Array]:
+) -> Sampled:
     """Estimate the marginals by sampling, and the error of each object's marginals.
 
     Ladders run in parts, each two parts twice as long as the two before, until the last two parts of all ladders agree
@@ -100,8 +113,8 @@ def sampled_marginals(
 
     Returns
     -------
-    tuple
-        Marginals, shape (n1, n2 + 1), and the standard error of each object's, shape (n1,).
+    Sampled
+        Marginals, shape (n1, n2 + 1), the standard error of each object's, shape (n1,), and the number of starts.
     """
     n1 = len(problem.unary)
     steps = max(RUNGS_PER_ROOT * math.sqrt(n1), MIN_RUNGS)
@@ -118,7 +131,7 @@ def sampled_marginals(
         marginals, errors = _agreement(parts, beliefs)
         if number and errors.max() <= TOLERANCE:
             break
-    return marginals, errors
+    return Sampled(marginals, errors, len(run.starts.runs))
 
 
 def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> tuple[float, float]:
@@ -171,31 +184,7 @@ def warm() -> None:
     tables, ends = np.zeros((1, 2, 2), np.float32), np.array([[0, 1]])
     tiny = Problem(ends, np.array([0]), tables, np.zeros((2, 2)), np.zeros(2))
     next(_start(tiny.compiled, np.array([1.0, 0.5]), Deadline.never(), 0)[0].parts(1.0))
-
-
-def propagated_marginals(
-    problem: Compiled, deadline: Deadline, places: NDArray[np.float32] | None = None
-) -> tuple[Array, Compiled]:
-    """Return the marginals of belief propagation until the deadline, computed in one thread.
-
-    Parameters
-    ----------
-    problem
-        The problem in the layout of compiled loops.
-    deadline
-        End of the time limit.
-    places
-        Likelihood ratios of the facts at the places of absent objects, shape (2k, g, n2); None where they have none.
-
-    Returns
-    -------
-    tuple
-        Probability of each match, shape (n1, n2 + 1), the last column being that of absence; and the problem with the
-        places of absent objects.
-    """
-    with threadpool_limits(1, "blas"):
-        beliefs, placed = beliefs_with_places(problem, places, deadline)
-    return beliefs.astype(np.float64), placed
+    CoarseToFine(tiny.compiled, None).beliefs()
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,11 +200,22 @@ class _Part:
 class _Run:
     """Running ladders, in as many threads as there are processors."""
 
-    problem: Compiled
+    starts: Starts
     guide: Guide
     ladders: tuple[Chains, ...]
     seed: int
     deadline: Deadline
+
+    @property
+    def problem(self) -> Compiled:
+        """Problem with the places of absent objects."""
+        return self.starts.problem
+
+    @property
+    def first_coldness(self) -> float:
+        """Coldness of all chains at the start."""
+        last = float(self.ladders[0].coldness[-1])
+        return WARM_COLDNESS if self.starts.is_large and last > WARM_COLDNESS else min(MIN_COLDNESS, last)
 
     @property
     def rungs(self) -> int:
@@ -241,13 +241,17 @@ class _Run:
 
     def _cool(self, pool: ThreadPoolExecutor) -> bool:
         """Begin the ladders and cool their chains, faster where time is short; return False where there is no time."""
-        seeds = np.random.default_rng([self.seed, 0])
-        for chains in self.ladders:
+        seeds, guides = np.random.default_rng([self.seed, 0]), [self.guide] * LADDERS
+        if self.starts.is_large:
+            runs = [guide_by(run, self.problem.allowed, 1.0) for run in self.starts.runs]
+            guides = [runs[run] for run in self.starts.of_ladders(LADDERS)]
+        for chains, guide in zip(self.ladders, guides, strict=True):
             if self.deadline.passed:
                 return False
-            begin(chains, self.problem, self.guide, int(seeds.integers(1 << 30)))
+            begin(chains, self.problem, guide, int(seeds.integers(1 << 30)))
         until = self.deadline.share(COOLING_SHARE)
         seconds, progress = until.left, 0.0
+        turns = COOLING_TURNS * min(1.0, (1.0 - self.first_coldness) / (1.0 - MIN_COLDNESS))
         at_once = max(1, int(PROPOSALS_PER_CLOCK_CHECK / (COOLING_SWEEPS * self.rungs * len(self.problem.unary))))
         while progress < 1.0:
             if self.deadline.passed:
@@ -256,14 +260,14 @@ class _Run:
             steps: list[float] = []
             drawn: list[list[int]] = []
             while progress < 1.0 and len(steps) < at_once:
-                progress = min(1.0, max(progress + 1.0 / COOLING_TURNS, elapsed))
+                progress = min(1.0, max(progress + 1.0 / turns, elapsed))
                 steps.append(progress)
                 drawn.append(seeds.integers(1 << 30, size=LADDERS).tolist())
             list(pool.map(self._cool_some_turns, self.ladders, zip(*drawn, strict=True), [steps] * LADDERS))
         return True
 
     def _cool_some_turns(self, chains: Chains, seeds: tuple[int, ...], steps: list[float]) -> None:
-        hottest = min(MIN_COLDNESS, chains.coldness[-1])
+        hottest = self.first_coldness
         for seed, progress in zip(seeds, steps, strict=True):
             coldness = hottest + (chains.coldness - hottest) * progress
             cool(chains, self.problem, self.guide, coldness, COOLING_SWEEPS, seed)
@@ -291,9 +295,11 @@ def _start(
     problem: Compiled, coldness: Array, deadline: Deadline, seed: int, places: NDArray[np.float32] | None = None
 ) -> tuple[_Run, Array]:
     """Return a run at those temperatures (K,), and the beliefs (n1, n2 + 1) that guide it."""
-    beliefs, placed = propagated_marginals(problem, deadline.share(GUIDE_SHARE), places)
-    ladders = tuple(new_chains(problem, coldness) for _ in range(LADDERS))
-    return _Run(placed, guide_by(beliefs, problem.allowed), ladders, seed, deadline.share(CHAINS_SHARE)), beliefs
+    share = COARSE_GUIDE_SHARE if problem.unary.shape[1] > MIN_COARSE_THINGS else GUIDE_SHARE
+    starts = starts_of(problem, places, deadline.share(share))
+    ladders, beliefs = tuple(new_chains(problem, coldness) for _ in range(LADDERS)), starts.beliefs
+    guide = guide_by(beliefs, problem.allowed)
+    return _Run(starts, guide, ladders, seed, deadline.share(CHAINS_SHARE)), beliefs
 
 
 def _agreement(parts: list[_Part], beliefs: Array) -> tuple[Array, Array]:

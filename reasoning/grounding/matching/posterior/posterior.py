@@ -18,8 +18,16 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.posterior.enumeration import add_up, factors
 from deixis.reasoning.grounding.matching.posterior.exchangeable import averaged, exchangeable
-from deixis.reasoning.grounding.matching.posterior.ladders import propagated_marginals, sampled_marginals
-from deixis.reasoning.grounding.matching.problem import MatchingError, Problem, to_assignment, to_labels
+from deixis.reasoning.grounding.matching.posterior.ladders import sampled_marginals
+from deixis.reasoning.grounding.matching.posterior.starts import starts_of
+from deixis.reasoning.grounding.matching.problem import (
+    MAX_PLACES,
+    MIN_PLACES,
+    MatchingError,
+    Problem,
+    to_assignment,
+    to_labels,
+)
 from deixis.reasoning.grounding.matching.search.belief_propagation import belief_seconds
 from deixis.reasoning.grounding.matching.search.scalable import search_from
 
@@ -33,13 +41,15 @@ SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # maximum work of sums, and cells of facts; 
 MIN_PLACED_THINGS = 50
 """Minimum number of things for which absent objects have places: in small scenes they cost more than they decide."""
 
-SECONDS_PER_PLACED_THING, MAX_PLACED_THINGS, PLACES_SHARE = 1e-6, 300, 0.3
-"""Approximate seconds for the evidence of the places of absent objects, per table and pair of things; number of things
-beyond which their number does not grow; and share of the time that they may take, without which they are left out."""
+SECONDS_PER_PLACE, PLACES_SHARE = 3.3e-7, 0.3
+"""Approximate seconds for the evidence of a place of absent objects, per table and thing; and share of the time that
+all places may take. Where the time is short there are fewer places, and none where there would be fewer than the
+minimum number."""
 
 MAX_SETTLED_OBJECTS = 150
-"""Maximum number of objects whose absence the places alone decide: in larger scenes, belief propagation may settle a
-part one place beside its own, so that matches are discounted for coincidences too."""
+"""Maximum number of objects whose absence the places alone decide if all chains start from one run of belief
+propagation: it may settle a part one place beside its own, so that matches are discounted for coincidences too. Several
+runs seldom settle the same part wrongly, and chains that start from them disagree on it."""
 
 START_EFFORT = 0.1  # effort of the search for a first map
 
@@ -147,14 +157,15 @@ def posterior(
         labels = np.full(n1, n2) if start is None else to_labels(start, n2)
         return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
     if not chains:
-        return Posterior(propagated_marginals(problem.compiled, deadline)[0], False, math.inf, is_propagated=True)
+        beliefs = starts_of(problem.compiled, None, deadline).beliefs
+        return Posterior(beliefs, False, math.inf, is_propagated=True)
     places = None
     if problem.places is not None and len(problem.ends) and n2 >= MIN_PLACED_THINGS:
-        needed = SECONDS_PER_PLACED_THING * len(problem.tables) * n2 * min(n2, MAX_PLACED_THINGS)
-        places = problem.places() if needed < PLACES_SHARE * deadline.left else None
-    marginals, errors = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
+        most = min(PLACES_SHARE * deadline.left / (SECONDS_PER_PLACE * len(problem.tables) * n2), MAX_PLACES)
+        places = problem.places(most=int(most)) if most >= MIN_PLACES else None
+    marginals, errors, starts = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
     error = float(errors.max(initial=0.0))
-    placed = places is not None and n1 <= MAX_SETTLED_OBJECTS
+    placed = places is not None and (n1 <= MAX_SETTLED_OBJECTS or starts > 1)
     return Posterior(marginals, False, error, errors, is_propagated=not math.isfinite(error), placed=placed)
 
 

@@ -25,7 +25,7 @@ EVEN_SHARE = 0.05
 """Share of the proposals for an object that are drawn uniformly from its allowed things."""
 
 FLATTENING = 0.5
-"""Power of the beliefs by which the other proposals are drawn, so that chains can leave likely things."""
+"""Usual power of the beliefs by which the other proposals are drawn, so that chains can leave likely things."""
 
 SETTLED_WEIGHT = 0.25
 """Frequency of proposals for an object with certain beliefs, relative to one with uninformative beliefs."""
@@ -73,7 +73,7 @@ def new_chains(problem: Compiled, coldness: NDArray[np.float64]) -> Chains:
     return Chains(labels, holder, np.zeros(rungs), coldness)
 
 
-def guide_by(beliefs: NDArray[np.floating], allowed: NDArray[np.bool_]) -> Guide:
+def guide_by(beliefs: NDArray[np.floating], allowed: NDArray[np.bool_], power: float = FLATTENING) -> Guide:
     """Return the guide by beliefs; it never proposes a match that is not allowed.
 
     Parameters
@@ -82,13 +82,15 @@ def guide_by(beliefs: NDArray[np.floating], allowed: NDArray[np.bool_]) -> Guide
         Estimated probability of each match, shape (n1, n2 + 1).
     allowed
         Allowed matches, shape (n1, n2 + 1).
+    power
+        Power of the beliefs by which things are drawn; less than 1 so that chains can leave likely things.
 
     Returns
     -------
     Guide
         Distributions from which chains draw proposals in constant time.
     """
-    chance = np.where(allowed, np.maximum(beliefs, 0.0).astype(np.float32) ** np.float32(FLATTENING), np.float32(0.0))
+    chance = np.where(allowed, np.maximum(beliefs, 0.0).astype(np.float32) ** np.float32(power), np.float32(0.0))
     chance /= np.maximum(chance.sum(axis=1, keepdims=True), np.float32(1e-30))
     chance *= np.float32(1.0 - EVEN_SHARE)
     chance += np.float32(EVEN_SHARE) * allowed / allowed.sum(axis=1, keepdims=True).astype(np.float32)
@@ -158,6 +160,25 @@ def begin(chains, problem, guide, seed):  # type: ignore[no-untyped-def]
                     labels[i], holder[p] = p, i
                     break
         chains.values[k] = _value(labels, problem)
+
+
+def map_value(labels: NDArray[np.int64], problem: Compiled) -> float:
+    """Return the value of a map, including the facts about absent objects where these have places.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), with n2 for objects that are left out.
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    float
+        Value in nats.
+    """
+    out = problem.unary.shape[1] - 1
+    return float(_value(labels, problem) + problem.unary[labels == out, out].sum())
 
 
 @njit(cache=True)

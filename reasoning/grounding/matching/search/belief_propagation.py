@@ -101,7 +101,7 @@ def propagate(
         if left <= MIN_LEVELS * (now - before) * (1.0 - done):
             return None
         done += max(1.0 / levels, (now - before) / left)
-    return _one_to_one(belief, problem)
+    return one_to_one(belief, problem)
 
 
 def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: int = STEPS) -> Messages:
@@ -200,13 +200,7 @@ def located(
     belief: Messages,
     wiring: _Wiring,
 ) -> Compiled:
-    """Return the problem with a place for each object, at which it is if it is absent.
-
-    An object that is absent is somewhere, and its facts are about that place. Each object gets the place with the
-    largest product of its facts' likelihoods, given the messages about the others. Its absence gets the mean of that
-    product over all places, relative to this place: the likelihood that the facts fit some place by chance is the mean
-    over the places. The prior odds of absence are by the expected number of absent objects (empirical Bayes): the
-    number of things that are not described grows with it.
+    """Return the problem with a place for each object by messages, at which it is if it is absent.
 
     Parameters
     ----------
@@ -226,20 +220,52 @@ def located(
     Compiled
         Copy with values of absence and of the facts about absent objects.
     """
-    slots, (n1, width) = len(problem.kind), problem.unary.shape
     chances = cavity / cavity.sum(axis=1, keepdims=True)
-    likelihoods = np.empty((slots, places.shape[1]), np.float32)
+    likelihoods = np.empty((len(cavity), places.shape[1]), np.float32)
     for table, first, end in wiring.runs:
         np.matmul(chances[first:end, :-1], places[table].T, out=likelihoods[first:end])
     likelihoods += chances[:, -1:]
     log_likelihood = wiring.adder @ np.log(likelihoods, out=likelihoods)
+    return placed_at(problem, places, log_likelihood, float(belief[:, -1].sum()))
+
+
+def placed_at(
+    problem: Compiled, places: NDArray[np.float32], log_likelihood: NDArray[np.float32], absent: float
+) -> Compiled:
+    """Return the problem with the most likely place of each object, at which it is if it is absent.
+
+    An object that is absent is somewhere, and its facts are about that place. Each object gets the place with the
+    largest product of its facts' likelihoods, given the messages about the others. Its absence gets the mean of that
+    product over all places, relative to this place: the likelihood that the facts fit some place by chance is the mean
+    over the places. The prior odds of absence are by the expected number of absent objects (empirical Bayes): the
+    number of things that are not described grows with it.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops, with the prior odds of absence.
+    places
+        Likelihood ratios of the facts at g places, shape (2k, g, n2).
+    log_likelihood
+        Logarithm of the likelihood of each object's facts at each place, shape (n1, g).
+    absent
+        Expected number of absent objects.
+
+    Returns
+    -------
+    Compiled
+        Copy with values of absence and of the facts about absent objects.
+    """
+    n1, width = problem.unary.shape
     chosen = log_likelihood.argmax(axis=1)
     log_mean = np.log(np.exp(log_likelihood - log_likelihood.max(axis=1, keepdims=True)).mean(axis=1))
-    away = np.zeros((slots, width), np.float32)
-    for table, first, end in wiring.runs:
-        away[wiring.slot[first:end], :-1] = np.log(places[table][chosen[wiring.owner[first:end]]])
+    owner = np.repeat(np.arange(n1), np.diff(problem.first))
+    away = np.zeros((len(problem.kind), width), np.float32)
+    for table in range(len(places)):
+        here = problem.kind == table
+        away[here, :-1] = np.log(places[table][chosen[owner[here]]])
     unary = problem.unary.copy()
-    expected = min(float(belief[:, -1].sum()), n1 / 2)
+    expected = min(absent, n1 / 2)
     gain = _log_odds_of_absence(expected, n1, width - 1) - _log_odds_of_absence(max(0, n1 - width + 1), n1, width - 1)
     unary[:, -1] += np.where(unary[:, -1] > CERTAINLY_PRESENT, max(0.0, gain) + log_mean, 0.0)
     return problem._replace(unary=unary, away=away)
@@ -361,8 +387,21 @@ def _normalised(messages: Messages) -> Messages:
     return messages
 
 
-def _one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
-    """Return the map with the largest product of beliefs."""
+def one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
+    """Return the map with the largest product of beliefs.
+
+    Parameters
+    ----------
+    belief
+        Logarithms of the probabilities of matches, shape (n1, n2 + 1), up to a constant for each object.
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    ndarray
+        Thing of each object, shape (n1,), with n2 for objects that are left out.
+    """
     gain = np.where(problem.allowed, belief.astype(np.float64), -np.inf)
     labels, price, profit = np.empty(len(gain), np.int64), np.empty(gain.shape[1] - 1), np.empty(len(gain))
     solve_assignment(gain, labels, price, profit)

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem, to_assignment, to_labels
-from deixis.reasoning.grounding.matching.search.belief_propagation import propagate
+from deixis.reasoning.grounding.matching.search.belief_propagation import one_to_one, propagate
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import MIN_COARSE_THINGS, CoarseToFine
 from deixis.reasoning.grounding.matching.search.local_search import (
     NOISE_TABLE_SIZE,
     anneal,
@@ -209,8 +210,14 @@ def _relative_temperatures(hot: float, levels: int) -> NDArray[np.float64]:
 def _propagated(
     labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
-    """Anneal the map of belief propagation briefly, or where the time does not suffice for it, anneal in full."""
+    """Anneal the map of belief propagation briefly, or where the time does not suffice for it, anneal in full.
+
+    Where cooled belief propagation takes too long in a large scene, the map is that of beliefs from coarse to fine.
+    """
     found = propagate(compiled, mean_range(compiled), deadline.share(0.5), effort=effort, seed=seed)
+    if found is None and len(compiled.unary[0]) > MIN_COARSE_THINGS and not deadline.passed:
+        beliefs, _ = CoarseToFine(compiled, None).beliefs(deadline.share(0.5), seed=seed)
+        found = one_to_one(np.log(np.maximum(beliefs, np.float32(1e-12))), compiled)
     if found is None:
         return _annealed(labels, compiled, deadline, seed + 1, effort, most)
     climb(found, compiled)
