@@ -18,25 +18,24 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect, detect_above
-from deixis.perception.detection.outline import oriented_box
-from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import OrientedBox, Scene
-from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
-from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
-from deixis.perception.tracking.fitting import Fit, fits
-from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
-from deixis.perception.tracking.outside import GAP, Hands, Outline
-from deixis.perception.tracking.particles import Estimate
-from deixis.perception.tracking.pipeline import Pipeline
-from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Changes, Reference
-from deixis.perception.tracking.registration import levels_of
-from deixis.perception.tracking.revolution import circle_around
+from deixis.perception.scene import Scene
+from deixis.perception.tracking.camera.motion import STANDING, CameraMotion, moved_by
+from deixis.perception.tracking.camera.registration import levels_of
+from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.table_colours import TableColours
-from deixis.perception.tracking.thing import Situation
+from deixis.perception.tracking.situation import Situation
+from deixis.perception.tracking.table.colours import TableColours
+from deixis.perception.tracking.table.outline import Outline
+from deixis.perception.tracking.table.reference import GAP, TABLE, UNKNOWN_OWNER, Changes, Reference
+from deixis.perception.tracking.things.completion import FlatThing, revealed_part, stands_behind
+from deixis.perception.tracking.things.fitting import Fit, fits
+from deixis.perception.tracking.things.hands import Hands
+from deixis.perception.tracking.things.model import model_of
+from deixis.perception.tracking.things.particles import Estimate
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 MIN_FINITE_SHARE = 0.02
 """Least share of points with a depth in a frame that is used."""
@@ -345,8 +344,8 @@ class Tracker:
     ) -> Pipeline:
         assert self._frame is not None
         change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
-        own, half, oriented, pose = _model(found, cloud, points, k, change, self.settings.detection.outlines)
-        made = Pipeline(id, slot, own, half, oriented, pose, at, self.settings)
+        model = model_of(found, cloud, points, k, change, self.settings.detection.outlines)
+        made = Pipeline(id, slot, model.cloud, model.half, model.oriented, model.pose, at, self.settings)
         made.rest = next(self._rests)
         return made
 
@@ -1008,36 +1007,3 @@ def _enlarged(mask: NDArray[np.bool_], stride: int, shape: tuple[int, int]) -> N
     rows, columns = min(shape[0], large.shape[0]), min(shape[1], large.shape[1])
     whole[:rows, :columns] = large[:rows, :columns]
     return whole
-
-
-def _model(
-    found: Detection,
-    cloud: PointCloud,
-    points: NDArray[np.intp],
-    k: int,
-    change: NDArray[np.float64],
-    outlines: OutlineSettings,
-) -> tuple[PointCloud, NDArray[np.float64], OrientedBox, NDArray[np.float64]]:
-    """Return the cloud in a thing's own frame, half its sides, its turned box, and its pose in the tracker's frame."""
-    own = moved(moved(cloud.points[points].astype(np.float64), found.frame), change)
-    turn = float(np.arctan2(change[1, 0], change[0, 0]))
-    box = found.oriented[k]
-    centre = moved(np.array([box.centre]), change)[0]
-    middle = moved(found.boxes[k].mean(axis=0)[None], change)[0]
-    half = (found.boxes[k][1] - found.boxes[k][0]) / 2
-    if abs(turn) > np.deg2rad(3.0):
-        cosine, sine = abs(np.cos(turn)), abs(np.sin(turn))
-        half = np.array([cosine * half[0] + sine * half[1], sine * half[0] + cosine * half[1], half[2]])
-    around = OrientedBox(tuple(centre.tolist()), box.yaw + turn, box.extents)
-    circle = circle_around(own)
-    if circle is not None:  # its back is hidden
-        corners = np.stack([middle - half, middle + half])
-        corners[0, :2] = np.minimum(corners[0, :2], circle.centre - circle.radius)
-        corners[1, :2] = np.maximum(corners[1, :2], circle.centre + circle.radius)
-        middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
-        around = oriented_box(own, outlines, circle)
-    pose = np.eye(4)
-    pose[:3, 3] = middle
-    oriented = OrientedBox(tuple((np.array(around.centre) - middle).tolist()), around.yaw, around.extents)
-    colours = None if cloud.colours is None else cloud.colours[points]
-    return PointCloud((own - middle).astype(np.float32), colours), half, oriented, pose

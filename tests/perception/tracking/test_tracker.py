@@ -15,9 +15,9 @@ from deixis.perception.detection.detect import detect
 from deixis.perception.errors import CloudError
 from deixis.perception.simulator.films.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.tracking.image import optics_of
+from deixis.perception.tracking.frames.image import optics_of
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.thing import Situation
+from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.tracker import Tracker
 
 pytest.importorskip("open3d")

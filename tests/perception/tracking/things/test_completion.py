@@ -7,11 +7,11 @@ import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
-from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
-from deixis.perception.tracking.image import FrameImage, Optics, TableView, table_view
-from deixis.perception.tracking.pipeline import Pipeline
-from deixis.perception.tracking.reference import TABLE, Reference
+from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, table_view
 from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.table.reference import TABLE, Reference
+from deixis.perception.tracking.things.completion import FlatThing, revealed_part, stands_behind
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 SHAPE = 60, 120
 OPTICS = Optics(np.array([[200.0, 0, 59.5], [0, 200.0, 29.5], [0, 0, 1]]), np.zeros(3))

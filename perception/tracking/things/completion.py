@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.scene import turned_axes
-from deixis.perception.tracking.image import FrameImage, TableView
-from deixis.perception.tracking.pipeline import Pipeline, likeness
-from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Reference
+from deixis.perception.tracking.frames.image import FrameImage, TableView
+from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
+from deixis.perception.tracking.things.pipeline import Pipeline, likeness
 
 FLAT = 0.03
 """Height in metres below which a thing may have parts that are lost in the noise of the table."""

@@ -1,9 +1,10 @@
-"""Outline of the table, and hands that come over it from outside."""
+"""Hands that come over the table from outside."""
 
 import numpy as np
 
-from deixis.perception.tracking.image import FrameImage, Optics
-from deixis.perception.tracking.outside import MAX_STEP, Hands, Outline
+from deixis.perception.tracking.frames.image import FrameImage, Optics
+from deixis.perception.tracking.table.outline import Outline
+from deixis.perception.tracking.things.hands import MAX_STEP, Hands
 
 ROWS, COLUMNS = 60, 80
 OPTICS = Optics(np.array([[80.0, 0, 39.5], [0, 80.0, 29.5], [0, 0, 1]]), np.zeros(3))
@@ -19,17 +20,6 @@ def image_of_arm(rows: int, height: float = 0.2) -> tuple[FrameImage, np.ndarray
     rays = np.stack([column, row, np.ones(depth.shape)], axis=-1) @ np.linalg.inv(OPTICS.matrix).T
     points = (rays * depth[..., None]).astype(np.float32)
     return FrameImage(points, depth, np.zeros_like(points), OPTICS), depth < 1
-
-
-def test_outline_grows_and_knows_what_is_beyond() -> None:
-    outline = Outline()
-    assert not outline.beyond(np.array([[5.0, 5.0]])).any(), "nothing is known yet"
-    square = np.array([(x, y) for x in np.linspace(0, 1, 9) for y in np.linspace(0, 1, 9)])
-    outline.extend(square)
-    assert outline.beyond(np.array([[0.5, 0.5], [1.02, 0.5], [1.2, 0.5]])).tolist() == [False, False, True]
-    outline.extend(square + np.array([0.5, 0.0]))
-    assert not outline.beyond(np.array([[1.2, 0.5]])).any()
-    assert outline.is_crossed_by(np.array([(x, 0.5, 0.1) for x in np.linspace(1, 2, 40)]))
 
 
 def test_step_of_a_hand_is_that_of_its_end() -> None:

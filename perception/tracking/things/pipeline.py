@@ -1,6 +1,6 @@
 """Pipeline of one tracked thing: its model, its pose, and its particle filter, which start and end with it.
 
-The particle filter is that of :mod:`deixis.perception.tracking.particles` (KLD sampling; Fox 2003).
+The particle filter is that of :mod:`deixis.perception.tracking.things.particles` (KLD sampling; Fox 2003).
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.scene import OrientedBox, turned_axes
-from deixis.perception.tracking.image import FrameImage, TableView
-from deixis.perception.tracking.particles import Estimate, ParticleFilter
+from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.thing import State, TrackedThing
+from deixis.perception.tracking.situation import State, TrackedThing
+from deixis.perception.tracking.table.reference import Beneath
+from deixis.perception.tracking.things.particles import Estimate, ParticleFilter
 
 HIDDEN_SCORE, EMPTY_SCORE = 0.12, -0.35
 """Scores of a point that something may hide, and of a point where something should be seen and is not."""
@@ -43,16 +44,6 @@ MIN_POINTS_BEYOND = 5
 
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops to a half."""
-
-
-@dataclass(frozen=True, eq=False)
-class Beneath:
-    """Content of the reference at pixels before a thing covered them: flat indices (k,), depths, colours and labels."""
-
-    pixels: NDArray[np.intp]
-    depth: NDArray[np.float32]
-    colour: NDArray[np.float32]
-    label: NDArray[np.int16]
 
 
 @dataclass(eq=False)
