@@ -30,7 +30,7 @@ from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.table.colours import TableColours
 from deixis.perception.tracking.table.outline import Outline
 from deixis.perception.tracking.table.reference import GAP, TABLE, UNKNOWN_OWNER, Changes, Reference
-from deixis.perception.tracking.things.completion import FlatThing, revealed_part, stands_behind
+from deixis.perception.tracking.things.completion import MARGIN, FlatThing, revealed_part, stands_behind
 from deixis.perception.tracking.things.fitting import Fit, fits
 from deixis.perception.tracking.things.hands import Hands
 from deixis.perception.tracking.things.model import model_of
@@ -199,7 +199,8 @@ class Tracker:
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
         limits = self.settings
         self._reference.remember(image, changes, at, limits.tolerance, self._deviation, limits.colour)
-        hand = self._hands.see(image, ~changes.same, self._outline, self._back)
+        resting = [thing for thing in self._things if not thing.active]
+        hand = self._hands.see(image, changes, self._outline, self._back, resting)
         by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
         if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
             return self._begin_anew(cloud, image, changes, at, number)
@@ -210,7 +211,7 @@ class Tracker:
         self._follow(image, changes, at, at - before)
         went = self._let_go(at)
         came = self._look_for_new(cloud, image, changes, hand, at)
-        merged = tuple(thing.report(at) for thing in self._complete(image, at))
+        merged = tuple(thing.report(at) for thing in self._complete(image, changes, hand, at))
         return replace(self._situation(at, number, came, went), merged=merged, busy=self._hand_at == at)
 
     @property
@@ -715,33 +716,57 @@ class Tracker:
         self._things = [thing for thing in self._things if thing not in gone]
         return tuple(gone)
 
-    def _complete(self, image: FrameImage, at: float) -> tuple[Pipeline, ...]:
+    def _complete(
+        self, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
+    ) -> tuple[Pipeline, ...]:
         """Add the missing parts to one of the things that have rested for a while; return what was merged."""
         assert self._reference is not None and self._view is not None
         limits, reference, view = self.settings, self._reference, self._view
         ready = (
             thing
             for thing in self._things
-            if not thing.active and not thing.completed and thing.seen_at == at and self._hand_at < at
-            and at - max(thing.at, thing.settled_at) >= limits.complete_after
+            if not thing.active and not thing.completed and thing.seen_at == at
+            and at - max(thing.at, thing.settled_at) >= limits.complete_after and self._is_clear(thing, hand, at)
         )  # fmt: skip
         thing = next(ready, None)
         if thing is None:
             return ()
         thing.completed = True
+        own = np.flatnonzero(reference.owner == thing.slot)
+        if not thing.first_rest and len(own) >= limits.least_pixels:
+            taken = (changes.same & (reference.owner != thing.slot)) | hand
+            thing.align(image, view, taken, reference.points(own, view), self._noise)
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        flat = FlatThing(thing, reference, view, eye, self._noise, limits.colour)
-        merged = flat.pieces(other for other in self._things if other is not thing)
-        parts = np.isin(reference.owner, [piece.slot for piece in merged])
-        new = np.union1d(flat.missing_part(), np.flatnonzero(parts))
+        changed = ~changes.same & (image.depth > 0) & (at - reference.since >= limits.steady) & ~hand
+
+        def flat() -> FlatThing:
+            return FlatThing(thing, reference, view, eye, self._noise, limits.colour, image, changed)
+
+        merged = flat().pieces(other for other in self._things if other is not thing)
+        parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
+        reference.owner.ravel()[parts] = thing.slot
+        new = flat().missing_part()
         reference.owner.ravel()[new] = thing.slot
-        new = np.union1d(new, revealed_part(thing, reference, view))
+        reference.give(new[changed.ravel()[new]], thing.slot, image)
+        new = np.union1d(np.union1d(new, parts), revealed_part(thing, reference, view))
         if len(new):
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]
             thing.extend(reference.points(each, view), colours, limits.detection.outlines)
         self._things = [other for other in self._things if other not in merged]
         return tuple(merged)
+
+    def _is_clear(self, thing: Pipeline, hand: NDArray[np.bool_], at: float) -> bool:
+        """Return True if nothing moves over the table, or only a hand that is far from a thing in the image."""
+        assert self._reference is not None
+        if self._hand_at < at:
+            return True
+        own = self._reference.owner == thing.slot
+        rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
+        if not hand.any() or not len(rows):
+            return False
+        top, left = max(int(rows[0]) - MARGIN, 0), max(int(columns[0]) - MARGIN, 0)
+        return not hand[top : int(rows[-1]) + MARGIN + 1, left : int(columns[-1]) + MARGIN + 1].any()
 
     # What is new
 

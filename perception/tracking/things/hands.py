@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.tracking.frames.image import FrameImage
 from deixis.perception.tracking.table.outline import MIN_OUTSIDE_PIXELS, Outline
-from deixis.perception.tracking.table.reference import GAP
+from deixis.perception.tracking.table.reference import GAP, Changes
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 HAND_MARGIN = 4
 """Distance in pixels from a hand within which surfaces are taken for parts of the hand."""
@@ -24,6 +27,9 @@ MAX_STEP = 0.25
 MAX_CHANGE = 0.06
 """Largest difference in metres of two steps of a hand; beyond it, a thing joined or left the surface of the hand."""
 
+LOW = 0.03
+"""Height in metres above the table below which a surface that comes into view may lie on it."""
+
 REACH = 0.12
 """Distance in metres from the end of a hand within which it holds the side of a thing."""
 
@@ -37,20 +43,28 @@ class Hands:
         self._steps = np.zeros((0, 3))
 
     def see(
-        self, image: FrameImage, changed: NDArray[np.bool_], outline: Outline, back: NDArray[np.float64]
+        self,
+        image: FrameImage,
+        changes: Changes,
+        outline: Outline,
+        back: NDArray[np.float64],
+        resting: Iterable[Pipeline] = (),
     ) -> NDArray[np.bool_]:
         """Find the hands in a frame.
 
+        A camera that moves brings things into view at the border of the image, where nothing is known yet. Pixels
+        without a reference therefore do not show a hand there if they are low, or within the box of a thing at rest.
+
         Parameters
         ----------
-        image
-            The frame.
-        changed
-            Mask (r, c) of the pixels that are not as in the reference.
+        image, changes
+            The frame, and its comparison with the reference.
         outline
             Outline of the table.
         back
             Transform (4, 4) from the frame of the cloud to that of the table.
+        resting
+            Things at rest.
 
         Returns
         -------
@@ -59,14 +73,19 @@ class Hands:
         """
         from scipy.ndimage import binary_dilation
 
-        from deixis.perception.tracking.kernels import connected
+        from deixis.perception.tracking.kernels import UNKNOWN, connected
 
-        of, count = connected(changed & (image.depth > 0), image.depth, np.float32(GAP))
+        of, count = connected(~changes.same & (image.depth > 0), image.depth, np.float32(GAP))
         pixels = np.flatnonzero(of)
         points, owner = image.places(pixels, back), of.ravel()[pixels]
         row, column = np.divmod(pixels, of.shape[1])
         border = (row < 2) | (column < 2) | (row >= of.shape[0] - 2) | (column >= of.shape[1] - 2)
-        root = border | outline.beyond(points[:, :2])
+        beyond = outline.beyond(points[:, :2])
+        new = np.flatnonzero((border | beyond) & (changes.state.ravel()[pixels] == UNKNOWN))
+        border[new] &= points[new, 2] > LOW
+        root = border | beyond
+        for thing in resting:
+            root[new] &= ~thing.contains(points[new], thing.settings.margin)
         from_outside = np.bincount(owner, root, minlength=count + 1) >= MIN_OUTSIDE_PIXELS
         from_outside[0] = False
         self._move_to([_tip(points[owner == k], root[owner == k]) for k in np.flatnonzero(from_outside)])

@@ -215,3 +215,17 @@ def test_thing_hidden_in_a_hand_moves_with_it() -> None:
     hidden = [frame.things[1].held and now.things[1].state == "hidden" for frame, now in seen]
     assert sum(hidden) >= 6, "the hand hides the cup on its way"
     assert np.array(away)[hidden].max() < 0.04 and away[-1] < 0.02
+
+
+def test_things_far_from_a_hand_are_completed_while_it_is_in_view() -> None:
+    far = Placement("mug", "mug", -0.45, 0.1, seed=2)
+    near = Placement("plate", "dinner plate", 0.45, 0.1, seed=1)
+    story = film([far, near], [PassOver(0.45, 0.1, seconds=2.0)], arm=np.pi / 2)
+    done = dict[str, bool]()
+    with Tracker(replace(HALF, complete_after=1.5)) as tracker:
+        for frame in story.frames(5, scale=0.4):
+            now = tracker.update(frame.cloud, frame.at)
+            if now.busy:
+                places = centres(now, frame)
+                done = {"mug" if places[thing.id][0] < 0 else "plate": thing.completed for thing in tracker._things}
+    assert done == {"mug": True, "plate": False}, "the hand is over the plate"
