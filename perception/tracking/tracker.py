@@ -757,13 +757,16 @@ class Tracker:
         return tuple(merged)
 
     def _is_clear(self, thing: Pipeline, hand: NDArray[np.bool_], at: float) -> bool:
-        """Return True if nothing moves over the table, or only a hand that is far from a thing in the image."""
+        """Return True if nothing moves over the table, or only a hand that is far from a thing in the image.
+
+        A thing that was followed has pixels that a hand may have spoilt: it is not clear while a hand is in view.
+        """
         assert self._reference is not None
         if self._hand_at < at:
             return True
         own = self._reference.owner == thing.slot
         rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
-        if not hand.any() or not len(rows):
+        if not hand.any() or not len(rows) or not thing.first_rest:
             return False
         top, left = max(int(rows[0]) - MARGIN, 0), max(int(columns[0]) - MARGIN, 0)
         return not hand[top : int(rows[-1]) + MARGIN + 1, left : int(columns[-1]) + MARGIN + 1].any()

@@ -157,8 +157,8 @@ class FlatThing:
     image
         The frame.
     changed
-        Mask (r, c) of the pixels at which the frame has shown something else than the reference for a while, such as
-        the parts of a thing from before which the camera has moved.
+        Mask (r, c) of the pixels at which the frame has shown something else than the reference for a while. Those
+        without an owner may show parts of the thing that came into view; the others may show something new.
     """
 
     def __init__(
@@ -192,7 +192,7 @@ class FlatThing:
         owners, counts = np.unique(self._owner[around & (self._owner != UNKNOWN_OWNER)], return_counts=True)
         carrier = int(owners[counts.argmax()]) if len(owners) else TABLE
         self._is_carried = carrier != TABLE
-        fresh = changed[self._window] & np.isin(self._owner, (carrier, UNKNOWN_OWNER))
+        fresh = changed[self._window] & (self._owner == UNKNOWN_OWNER) & (carrier == TABLE)
         depth = np.where(fresh, image.depth[self._window], depth)
         shade = np.where(fresh[..., None], image.colour[self._window], shade)
         table = ((self._owner == carrier) | fresh) & (depth > 0) & np.isfinite(level)

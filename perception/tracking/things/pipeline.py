@@ -37,6 +37,9 @@ gain of score for which its pose is corrected.
 ALIGN_STEP, ALIGN_END = (0.012, 0.012, np.deg2rad(6.0)), 0.001
 """First steps in metres and radians of the search for a better pose at rest, and the step at which it ends."""
 
+MIN_ALIGNED = 0.6
+"""Least share of the points of a thing that nothing hides, within the image, for its pose at rest to be corrected."""
+
 SHADE_SPREAD, COLOUR_SPREAD = 38.0, 15.0
 """Standard deviations of the colours of one place of a thing, as distances in RGB from 0 to 255: of the length of the
 colour, which changes with the light on a turned surface, and across that direction.
@@ -305,6 +308,8 @@ class Pipeline:
             found += covered(places, turns, own, centre, self.oriented.yaw, half)
             return found
 
+        if self.seen_at_place(image, view, taken, noise)[1] < MIN_ALIGNED:
+            return
         moved, turned = np.zeros((1, 3)), _quaternion(self.pose)[None]
         best = first = float(weigh(self.pose[None, :3, 3], turned)[0])
         step = np.array(ALIGN_STEP)

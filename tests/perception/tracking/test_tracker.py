@@ -217,7 +217,7 @@ def test_thing_hidden_in_a_hand_moves_with_it() -> None:
     assert np.array(away)[hidden].max() < 0.04 and away[-1] < 0.02
 
 
-def test_things_far_from_a_hand_are_completed_while_it_is_in_view() -> None:
+def test_things_far_from_a_hand_in_view_are_completed() -> None:
     far = Placement("mug", "mug", -0.45, 0.1, seed=2)
     near = Placement("plate", "dinner plate", 0.45, 0.1, seed=1)
     story = film([far, near], [PassOver(0.45, 0.1, seconds=2.0)], arm=np.pi / 2)

@@ -9,7 +9,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, table_view
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.table.reference import TABLE, Reference
+from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
 from deixis.perception.tracking.things.completion import FlatThing, revealed_part, stands_behind
 from deixis.perception.tracking.things.pipeline import Pipeline
 
@@ -142,7 +142,8 @@ def test_pieces_are_joined_by_their_middle_that_comes_into_view() -> None:
     lay(on, np.s_[29:32, 61:66], STEEL, 1)
     lay(now, np.s_[29:32, 42:66], STEEL, TABLE)
     end, handle = thing_at(np.s_[29:32, 42:45], 2), thing_at(np.s_[29:32, 61:66], 1)
-    assert flat(handle, on).pieces([end]) == [], "the reference has the table between them"
+    assert flat(handle, on, now).pieces([end]) == [], "something new may lie on the table between them"
+    on.owner[29:32, 45:61] = UNKNOWN_OWNER
     assert flat(handle, on, now).pieces([end]) == [end]
     on.owner[on.owner == 2] = 1
     middle = flat(handle, on, now).missing_part()
