@@ -934,7 +934,8 @@ class Tracker:
                     thing.beneath = reference.give(pixels, thing.slot, image)
         self._let_stand(came, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
-        reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
+        if self._hand_at < at:  # else a thing that is set down may not be whole yet
+            reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
         return tuple(came)
 
     def _filled(self, found: Detection, k: int) -> Pipeline | None:
