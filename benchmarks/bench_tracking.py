@@ -46,7 +46,7 @@ from deixis.perception.simulator.films.camera_paths import CAMERA_PATHS, camera_
 from deixis.perception.simulator.films.motion import FilmedFrame
 from deixis.perception.simulator.films.stories import random_film
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.thing import Situation
+from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.tracker import Tracker
 
 THINGS = (1, 2, 4, 8, 12)

@@ -292,3 +292,36 @@ def scores(  # type: ignore[no-untyped-def]
                 seen[p, 0] += 1
         found[p] = total / max(len(points), 1)
     return found, seen
+
+
+@njit(cache=True, nogil=True)
+def covered(places, turns, points, centre, yaw, half):  # type: ignore[no-untyped-def]
+    """Return the share (n,) of points that are within the box of a thing, for each of its poses.
+
+    Parameters
+    ----------
+    places, turns
+        Positions (n, 3) and unit quaternions (n, 4), real part first, of the poses.
+    points
+        Points (m, 3) in the table's frame.
+    centre, yaw, half
+        Middle (3,) of the box in the thing's own frame, its turn about the vertical, and half of its sides (3,).
+    """
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    found = np.zeros(len(places))
+    for p in range(len(places)):
+        w, x, y, z = turns[p]
+        r00, r01, r02 = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+        r10, r11, r12 = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+        r20, r21, r22 = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+        count = 0
+        for i in range(len(points)):
+            u, v, t = points[i, 0] - places[p, 0], points[i, 1] - places[p, 1], points[i, 2] - places[p, 2]
+            a = r00 * u + r10 * v + r20 * t - centre[0]
+            b = r01 * u + r11 * v + r21 * t - centre[1]
+            c = r02 * u + r12 * v + r22 * t - centre[2]
+            along, across = cosine * a + sine * b, cosine * b - sine * a
+            if abs(along) <= half[0] and abs(across) <= half[1] and abs(c) <= half[2]:
+                count += 1
+        found[p] = count / max(len(points), 1)
+    return found

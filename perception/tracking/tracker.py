@@ -18,25 +18,24 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect, detect_above
-from deixis.perception.detection.outline import oriented_box
-from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import OrientedBox, Scene
-from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
-from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
-from deixis.perception.tracking.fitting import Fit, fits
-from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
-from deixis.perception.tracking.outside import GAP, Hands, Outline
-from deixis.perception.tracking.particles import Estimate
-from deixis.perception.tracking.pipeline import Pipeline
-from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Changes, Reference
-from deixis.perception.tracking.registration import levels_of
-from deixis.perception.tracking.revolution import circle_around
+from deixis.perception.scene import Scene
+from deixis.perception.tracking.camera.motion import STANDING, CameraMotion, moved_by
+from deixis.perception.tracking.camera.registration import levels_of
+from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.table_colours import TableColours
-from deixis.perception.tracking.thing import Situation
+from deixis.perception.tracking.situation import Situation
+from deixis.perception.tracking.table.colours import TableColours
+from deixis.perception.tracking.table.outline import Outline
+from deixis.perception.tracking.table.reference import GAP, TABLE, UNKNOWN_OWNER, Changes, Reference
+from deixis.perception.tracking.things.completion import MARGIN, FlatThing, revealed_part, stands_behind
+from deixis.perception.tracking.things.fitting import Fit, fits
+from deixis.perception.tracking.things.hands import Hands
+from deixis.perception.tracking.things.model import model_of
+from deixis.perception.tracking.things.particles import Estimate
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 MIN_FINITE_SHARE = 0.02
 """Least share of points with a depth in a frame that is used."""
@@ -200,7 +199,8 @@ class Tracker:
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
         limits = self.settings
         self._reference.remember(image, changes, at, limits.tolerance, self._deviation, limits.colour)
-        hand = self._hands.see(image, ~changes.same, self._outline, self._back)
+        resting = [thing for thing in self._things if not thing.active]
+        hand = self._hands.see(image, changes, self._outline, self._back, resting)
         by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
         if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
             return self._begin_anew(cloud, image, changes, at, number)
@@ -211,7 +211,7 @@ class Tracker:
         self._follow(image, changes, at, at - before)
         went = self._let_go(at)
         came = self._look_for_new(cloud, image, changes, hand, at)
-        merged = tuple(thing.report(at) for thing in self._complete(image, at))
+        merged = tuple(thing.report(at) for thing in self._complete(image, changes, hand, at))
         return replace(self._situation(at, number, came, went), merged=merged, busy=self._hand_at == at)
 
     @property
@@ -345,8 +345,8 @@ class Tracker:
     ) -> Pipeline:
         assert self._frame is not None
         change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
-        own, half, oriented, pose = _model(found, cloud, points, k, change, self.settings.detection.outlines)
-        made = Pipeline(id, slot, own, half, oriented, pose, at, self.settings)
+        model = model_of(found, cloud, points, k, change, self.settings.detection.outlines)
+        made = Pipeline(id, slot, model.cloud, model.half, model.oriented, model.pose, at, self.settings)
         made.rest = next(self._rests)
         return made
 
@@ -716,33 +716,60 @@ class Tracker:
         self._things = [thing for thing in self._things if thing not in gone]
         return tuple(gone)
 
-    def _complete(self, image: FrameImage, at: float) -> tuple[Pipeline, ...]:
+    def _complete(
+        self, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
+    ) -> tuple[Pipeline, ...]:
         """Add the missing parts to one of the things that have rested for a while; return what was merged."""
         assert self._reference is not None and self._view is not None
         limits, reference, view = self.settings, self._reference, self._view
         ready = (
             thing
             for thing in self._things
-            if not thing.active and not thing.completed and thing.seen_at == at and self._hand_at < at
-            and at - max(thing.at, thing.settled_at) >= limits.complete_after
+            if not thing.active and not thing.completed and thing.seen_at == at
+            and at - max(thing.at, thing.settled_at) >= limits.complete_after and self._is_clear(thing, hand, at)
         )  # fmt: skip
         thing = next(ready, None)
         if thing is None:
             return ()
         thing.completed = True
+        own = np.flatnonzero(reference.owner == thing.slot)
+        if not thing.first_rest and len(own) >= limits.least_pixels:
+            taken = (changes.same & (reference.owner != thing.slot)) | hand
+            thing.align(image, view, taken, reference.points(own, view), self._noise)
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        flat = FlatThing(thing, reference, view, eye, self._noise, limits.colour)
-        merged = flat.pieces(other for other in self._things if other is not thing)
-        parts = np.isin(reference.owner, [piece.slot for piece in merged])
-        new = np.union1d(flat.missing_part(), np.flatnonzero(parts))
+        changed = ~changes.same & (image.depth > 0) & (at - reference.since >= limits.steady) & ~hand
+
+        def flat() -> FlatThing:
+            return FlatThing(thing, reference, view, eye, self._noise, limits.colour, image, changed)
+
+        merged = flat().pieces(other for other in self._things if other is not thing)
+        parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
+        reference.owner.ravel()[parts] = thing.slot
+        new = flat().missing_part()
         reference.owner.ravel()[new] = thing.slot
-        new = np.union1d(new, revealed_part(thing, reference, view))
+        reference.give(new[changed.ravel()[new]], thing.slot, image)
+        new = np.union1d(np.union1d(new, parts), revealed_part(thing, reference, view))
         if len(new):
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]
             thing.extend(reference.points(each, view), colours, limits.detection.outlines)
         self._things = [other for other in self._things if other not in merged]
         return tuple(merged)
+
+    def _is_clear(self, thing: Pipeline, hand: NDArray[np.bool_], at: float) -> bool:
+        """Return True if nothing moves over the table, or only a hand that is far from a thing in the image.
+
+        A thing that was followed has pixels that a hand may have spoilt: it is not clear while a hand is in view.
+        """
+        assert self._reference is not None
+        if self._hand_at < at:
+            return True
+        own = self._reference.owner == thing.slot
+        rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
+        if not hand.any() or not len(rows) or not thing.first_rest:
+            return False
+        top, left = max(int(rows[0]) - MARGIN, 0), max(int(columns[0]) - MARGIN, 0)
+        return not hand[top : int(rows[-1]) + MARGIN + 1, left : int(columns[-1]) + MARGIN + 1].any()
 
     # What is new
 
@@ -907,7 +934,8 @@ class Tracker:
                     thing.beneath = reference.give(pixels, thing.slot, image)
         self._let_stand(came, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
-        reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
+        if self._hand_at < at:  # else a thing that is set down may not be whole yet
+            reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
         return tuple(came)
 
     def _filled(self, found: Detection, k: int) -> Pipeline | None:
@@ -1008,36 +1036,3 @@ def _enlarged(mask: NDArray[np.bool_], stride: int, shape: tuple[int, int]) -> N
     rows, columns = min(shape[0], large.shape[0]), min(shape[1], large.shape[1])
     whole[:rows, :columns] = large[:rows, :columns]
     return whole
-
-
-def _model(
-    found: Detection,
-    cloud: PointCloud,
-    points: NDArray[np.intp],
-    k: int,
-    change: NDArray[np.float64],
-    outlines: OutlineSettings,
-) -> tuple[PointCloud, NDArray[np.float64], OrientedBox, NDArray[np.float64]]:
-    """Return the cloud in a thing's own frame, half its sides, its turned box, and its pose in the tracker's frame."""
-    own = moved(moved(cloud.points[points].astype(np.float64), found.frame), change)
-    turn = float(np.arctan2(change[1, 0], change[0, 0]))
-    box = found.oriented[k]
-    centre = moved(np.array([box.centre]), change)[0]
-    middle = moved(found.boxes[k].mean(axis=0)[None], change)[0]
-    half = (found.boxes[k][1] - found.boxes[k][0]) / 2
-    if abs(turn) > np.deg2rad(3.0):
-        cosine, sine = abs(np.cos(turn)), abs(np.sin(turn))
-        half = np.array([cosine * half[0] + sine * half[1], sine * half[0] + cosine * half[1], half[2]])
-    around = OrientedBox(tuple(centre.tolist()), box.yaw + turn, box.extents)
-    circle = circle_around(own)
-    if circle is not None:  # its back is hidden
-        corners = np.stack([middle - half, middle + half])
-        corners[0, :2] = np.minimum(corners[0, :2], circle.centre - circle.radius)
-        corners[1, :2] = np.maximum(corners[1, :2], circle.centre + circle.radius)
-        middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
-        around = oriented_box(own, outlines, circle)
-    pose = np.eye(4)
-    pose[:3, 3] = middle
-    oriented = OrientedBox(tuple((np.array(around.centre) - middle).tolist()), around.yaw, around.extents)
-    colours = None if cloud.colours is None else cloud.colours[points]
-    return PointCloud((own - middle).astype(np.float32), colours), half, oriented, pose

@@ -37,7 +37,7 @@ from deixis.perception.simulator.laying import (
 )
 from deixis.perception.simulator.meshes.hand import SKIN, hand
 from deixis.perception.simulator.meshes.rays import Hits, RayCaster
-from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.frames.frame import Frame
 
 HAND_SPEED = 0.5
 """Mean speed of the hand in metres per second, without the time for starting and stopping."""

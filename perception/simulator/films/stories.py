@@ -21,7 +21,7 @@ from deixis.perception.simulator.laying import (
 )
 from deixis.perception.simulator.meshes.tableware import drawn_plan, kind_named
 from deixis.perception.simulator.scatter import KINDS, scattered
-from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.frames.frame import Frame
 
 ROOM = 0.22
 """Distance in metres by which the table extends beyond the things that are on it at the start."""

@@ -15,9 +15,10 @@ from deixis.perception.detection.detect import detect
 from deixis.perception.errors import CloudError
 from deixis.perception.simulator.films.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.tracking.image import optics_of
+from deixis.perception.tracking.frames.image import image_of, optics_of
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.thing import Situation
+from deixis.perception.tracking.situation import Situation
+from deixis.perception.tracking.table.reference import TABLE
 from deixis.perception.tracking.tracker import Tracker
 
 pytest.importorskip("open3d")
@@ -214,3 +215,31 @@ def test_thing_hidden_in_a_hand_moves_with_it() -> None:
     hidden = [frame.things[1].held and now.things[1].state == "hidden" for frame, now in seen]
     assert sum(hidden) >= 6, "the hand hides the cup on its way"
     assert np.array(away)[hidden].max() < 0.04 and away[-1] < 0.02
+
+
+def test_things_far_from_a_hand_in_view_are_completed() -> None:
+    far = Placement("mug", "mug", -0.45, 0.1, seed=2)
+    near = Placement("plate", "dinner plate", 0.45, 0.1, seed=1)
+    story = film([far, near], [PassOver(0.45, 0.1, seconds=2.0)], arm=np.pi / 2)
+    done = dict[str, bool]()
+    with Tracker(replace(HALF, complete_after=1.5)) as tracker:
+        for frame in story.frames(5, scale=0.4):
+            now = tracker.update(frame.cloud, frame.at)
+            if now.busy:
+                places = centres(now, frame)
+                done = {"mug" if places[thing.id][0] < 0 else "plate": thing.completed for thing in tracker._things}
+    assert done == {"mug": True, "plate": False}, "the hand is over the plate"
+
+
+@pytest.mark.parametrize("is_hand_in_view", [True, False])
+def test_tries_count_only_when_no_hand_is_in_view(is_hand_in_view: bool) -> None:
+    frame = next(film([MUG], [Rest(0.1)]).frames(scale=0.4))
+    with Tracker(HALF) as tracker:
+        tracker.update(frame.cloud, 0.0)
+        optics, reference = optics_of(frame.cloud), tracker._reference
+        assert optics is not None and reference is not None
+        image = image_of(frame.cloud, optics, HALF.stride)
+        table = np.flatnonzero(reference.owner == TABLE)[:50]  # part of a thing that a hand is setting down
+        tracker._hand_at = 0.5 if is_hand_in_view else 0.0
+        assert tracker._segment(frame.cloud, image, tracker._compare(image, 0.5), table, 0.5) == ()
+        assert (reference.tries.ravel()[table] == (0 if is_hand_in_view else 1)).all()

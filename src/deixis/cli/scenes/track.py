@@ -14,9 +14,9 @@ from deixis.answers import count
 from deixis.cli.common import AsJson, print_json, print_lines
 
 if TYPE_CHECKING:
-    from deixis.perception.tracking.frame import Frame
-    from deixis.perception.tracking.stream import CloudSource
-    from deixis.perception.tracking.thing import Situation
+    from deixis.perception.tracking.frames.frame import Frame
+    from deixis.perception.tracking.frames.stream import CloudSource
+    from deixis.perception.tracking.situation import Situation
     from deixis.workflows.scenes.track import TrackedEvent
 
 
@@ -100,6 +100,6 @@ class _Recorded:
 
     def frames(self) -> Iterator[Frame]:
         """Yield the frames after they were written."""
-        from deixis.perception.tracking.stream import recording
+        from deixis.perception.tracking.frames.stream import recording
 
         return recording(self._source.frames(), self._folder)

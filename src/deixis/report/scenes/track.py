@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from deixis.perception.tracking.thing import Situation, TrackedThing
+    from deixis.perception.tracking.situation import Situation, TrackedThing
     from deixis.workflows.scenes.track import TrackedEvent, Tracking
 
 WORDS = {

@@ -36,8 +36,8 @@ from deixis.perception.pointing.aim import SURE, Pointing, pointed_at
 from deixis.perception.pointing.gesture import Gesture, GestureDetector
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.perception.tracking.frame import Frame
-from deixis.perception.tracking.thing import Situation, TrackedThing
+from deixis.perception.tracking.frames.frame import Frame
+from deixis.perception.tracking.situation import Situation, TrackedThing
 from deixis.perception.tracking.tracker import Tracker
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import to_ticks

@@ -1,8 +1,8 @@
 """Stories: what a robot sees and hears in the order of time, from a camera, a recorded folder or the simulator.
 
-A folder has clouds (see :class:`~deixis.perception.tracking.stream.FolderSource`) and, if there are any, the words
-(``words.said.jsonl``) and the skeletons (``people.skeleton.jsonl``) of persons, on the clock of the clouds. Skeletons
-are in the frame of the camera.
+A folder has clouds (see :class:`~deixis.perception.tracking.frames.stream.FolderSource`) and, if there are any, the
+words (``words.said.jsonl``) and the skeletons (``people.skeleton.jsonl``) of persons, on the clock of the clouds.
+Skeletons are in the frame of the camera.
 
 A live story does not wait for the robot: a thread reads its frames, and frames that come too fast are dropped and
 counted.
@@ -23,8 +23,8 @@ from deixis.grammar.utterances import Utterance
 from deixis.ontology.things.kinds import plain_name, with_article
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.scene import Scene
-from deixis.perception.tracking.frame import Frame
-from deixis.perception.tracking.stream import CloudSource, LatestFrames
+from deixis.perception.tracking.frames.frame import Frame
+from deixis.perception.tracking.frames.stream import CloudSource, LatestFrames
 from deixis.robot.modules import made
 
 if TYPE_CHECKING:
@@ -180,7 +180,7 @@ class StorySettings:
         """
         from deixis.grammar.utterances import read_utterances
         from deixis.perception.simulator.films.camera_paths import camera_path
-        from deixis.perception.tracking.stream import LatestFrames
+        from deixis.perception.tracking.frames.stream import LatestFrames
 
         camera_path(self.camera)  # an unknown path is an error in every story
         driver = self.source not in SIMULATED and not Path(self.source).exists() and ":" in self.source
@@ -268,7 +268,7 @@ def recorded_story(folder: str | Path, intrinsics: str | Path | None = None, gro
     """
     from deixis.grammar.utterances import read_utterances
     from deixis.perception.formats.skeletons import read_skeletons
-    from deixis.perception.tracking.stream import FolderSource
+    from deixis.perception.tracking.frames.stream import FolderSource
 
     place = Path(folder)
     source = FolderSource(place, grows=grows, intrinsics=intrinsics)

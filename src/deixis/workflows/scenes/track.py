@@ -9,10 +9,10 @@ from typing import Literal
 
 from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.errors import CloudError
-from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.frames.frame import Frame
+from deixis.perception.tracking.frames.stream import CloudSource, FileSource, FolderSource, LatestFrames
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.stream import CloudSource, FileSource, FolderSource, LatestFrames
-from deixis.perception.tracking.thing import Situation, TrackedThing
+from deixis.perception.tracking.situation import Situation, TrackedThing
 from deixis.perception.tracking.tracker import Tracker
 
 Change = Literal["new", "moves", "rests", "hidden", "seen", "gone", "merged"]

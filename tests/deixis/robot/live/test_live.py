@@ -14,7 +14,7 @@ from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.utterances import Utterance
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton
-from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.frames.frame import Frame
 from deixis.plots.live_story import write_story
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.moments import key_moments

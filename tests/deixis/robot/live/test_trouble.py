@@ -20,7 +20,7 @@ from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton
-from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.frames.frame import Frame
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import UNNAMED

@@ -11,8 +11,8 @@ from schemas import errors_in
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.simulator.films.motion import Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.tracking.frame import Frame
-from deixis.perception.tracking.stream import recording
+from deixis.perception.tracking.frames.frame import Frame
+from deixis.perception.tracking.frames.stream import recording
 from deixis.report.scenes.track import tracking_lines
 from deixis.workflows.scenes.track import cloud_source, track
 

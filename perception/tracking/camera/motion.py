@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.tracking.image import FrameImage, TableView
-from deixis.perception.tracking.reference import TABLE
-from deixis.perception.tracking.registration import Landmarks, Levels, Registration, levels_of, register
+from deixis.perception.tracking.camera.registration import Landmarks, Levels, Registration, levels_of, register
+from deixis.perception.tracking.frames.image import FrameImage, TableView
+from deixis.perception.tracking.table.reference import TABLE
 
 KEYFRAME_SHIFT, KEYFRAME_TURN = 0.12, np.deg2rad(10.0)
 """Distance in metres and angle in radians from all keyframes at which a new one is made."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from deixis.perception.tracking.revolution import circle_around
+from deixis.perception.tracking.things.revolution import circle_around
 
 
 def front(radius: float, *, height: float = 0.2) -> np.ndarray:

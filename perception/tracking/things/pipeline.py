@@ -1,10 +1,11 @@
 """Pipeline of one tracked thing: its model, its pose, and its particle filter, which start and end with it.
 
-The particle filter is that of :mod:`deixis.perception.tracking.particles` (KLD sampling; Fox 2003).
+The particle filter is that of :mod:`deixis.perception.tracking.things.particles` (KLD sampling; Fox 2003).
 """
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
 from dataclasses import dataclass, field
 
@@ -14,10 +15,11 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.scene import OrientedBox, turned_axes
-from deixis.perception.tracking.image import FrameImage, TableView
-from deixis.perception.tracking.particles import Estimate, ParticleFilter
+from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.thing import State, TrackedThing
+from deixis.perception.tracking.situation import State, TrackedThing
+from deixis.perception.tracking.table.reference import Beneath
+from deixis.perception.tracking.things.particles import Estimate, ParticleFilter, turned_by
 
 HIDDEN_SCORE, EMPTY_SCORE = 0.12, -0.35
 """Scores of a point that something may hide, and of a point where something should be seen and is not."""
@@ -26,6 +28,17 @@ FAR_SCORE = 0.06
 """Penalty of a place that is ``jump`` or farther from the predicted one. Without it, a place where something may hide
 all points can have a better score than the place where some are seen.
 """
+
+COVERED_MARGIN, MIN_BETTER = 0.003, 0.02
+"""Distance in metres by which the box of a thing is extended to cover the points that show it at rest, and the least
+gain of score for which its pose is corrected.
+"""
+
+ALIGN_STEP, ALIGN_END = (0.012, 0.012, np.deg2rad(6.0)), 0.001
+"""First steps in metres and radians of the search for a better pose at rest, and the step at which it ends."""
+
+MIN_ALIGNED = 0.6
+"""Least share of the points of a thing that nothing hides, within the image, for its pose at rest to be corrected."""
 
 SHADE_SPREAD, COLOUR_SPREAD = 38.0, 15.0
 """Standard deviations of the colours of one place of a thing, as distances in RGB from 0 to 255: of the length of the
@@ -43,16 +56,6 @@ MIN_POINTS_BEYOND = 5
 
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops to a half."""
-
-
-@dataclass(frozen=True, eq=False)
-class Beneath:
-    """Content of the reference at pixels before a thing covered them: flat indices (k,), depths, colours and labels."""
-
-    pixels: NDArray[np.intp]
-    depth: NDArray[np.float32]
-    colour: NDArray[np.float32]
-    label: NDArray[np.int16]
 
 
 @dataclass(eq=False)
@@ -266,6 +269,66 @@ class Pipeline:
         self.particles = found.particles
         inliers, exposed, inside = self._seen(found.place, found.turn, image, view, taken, noise)
         return found, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
+
+    def align(
+        self,
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        own: NDArray[np.float64],
+        noise: float,
+    ) -> None:
+        """Correct the pose of the thing at rest, so that its box covers the points that show it.
+
+        While a thing moves, a place that shows more of its points is better than one that hides them, and the points
+        of one part of a thing of one colour agree as well with another part. A pose therefore slides away from a hand,
+        or from the border of the image, that hides an edge. At rest, only the points that nothing hides count, and all
+        that shows the thing must be within its box. The thing moves along the table and turns about the vertical.
+
+        Parameters
+        ----------
+        image, view
+            The frame, and its view of the table.
+        taken
+            Mask (r, c) of the pixels that belong to something else.
+        own
+            Points (k, 3) that show the thing, in the table's frame.
+        noise
+            Standard deviation of depths at one metre.
+        """
+        from deixis.perception.tracking.kernels import covered
+
+        own = own[np.linspace(0, len(own) - 1, min(len(own), self.settings.particles.points)).astype(np.int64)]
+        centre, half = np.array(self.oriented.centre), np.array(self.oriented.extents) / 2 + COVERED_MARGIN
+
+        def weigh(places: NDArray[np.float64], turns: NDArray[np.float64]) -> NDArray[np.float64]:
+            found, seen = self._scores(places, turns, image, view, taken, noise)
+            exposed = seen[:, 1] / len(self._points)
+            found = (found - HIDDEN_SCORE * (1 - exposed)) / np.maximum(exposed, LEAST_INSIDE)
+            found += covered(places, turns, own, centre, self.oriented.yaw, half)
+            return found
+
+        if self.seen_at_place(image, view, taken, noise)[1] < MIN_ALIGNED:
+            return
+        moved, turned = np.zeros((1, 3)), _quaternion(self.pose)[None]
+        best = first = float(weigh(self.pose[None, :3, 3], turned)[0])
+        step = np.array(ALIGN_STEP)
+        while step[0] >= ALIGN_END:
+            tried = moved + step * np.array(list(itertools.product((-1, 0, 1), repeat=3)))
+            places = self.pose[:3, 3] + np.column_stack([tried[:, :2], np.zeros(len(tried))])
+            scores = weigh(places, turned_by(np.outer(tried[:, 2], (0.0, 0.0, 1.0)), turned.repeat(len(tried), axis=0)))
+            if scores.max() > best:
+                best, moved = float(scores.max()), tried[scores.argmax()][None]
+            else:
+                step = step / 2
+        if best > first + MIN_BETTER:
+            x, y, angle = moved[0]
+            cosine, sine = np.cos(angle), np.sin(angle)
+            pose = self.pose.copy()
+            pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ pose[:3, :3]
+            pose[:2, 3] += x, y
+            self.pose = self._rest = pose
+            self._filter.reset(pose)
 
     def likeness(self, tints: NDArray[np.float64], shade: float = SHADE_SPREAD) -> NDArray[np.float64]:
         """Return how well colours agree with those of the thing.

@@ -20,7 +20,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.errors import CloudError
-from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.frames.frame import Frame
 from deixis.text_files import read_lines
 
 TIMES = "times.csv"

@@ -10,11 +10,11 @@ from deixis.perception.simulator.cameras.camera import Camera, looking_pose
 from deixis.perception.simulator.films.camera_paths import CameraPath, HeadMotion, Walk
 from deixis.perception.simulator.films.motion import FilmedFrame, Move, Rest, film
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.tracking.camera_motion import moved_by
-from deixis.perception.tracking.image import FrameImage, Optics, table_view
-from deixis.perception.tracking.reference import Reference
+from deixis.perception.tracking.camera.motion import moved_by
+from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.thing import Situation
+from deixis.perception.tracking.situation import Situation
+from deixis.perception.tracking.table.reference import Reference
 from deixis.perception.tracking.tracker import Tracker
 
 pytest.importorskip("open3d")

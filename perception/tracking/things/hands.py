@@ -1,26 +1,19 @@
-"""Know the outline of the table, and follow what comes over it from outside: hands with their arms."""
+"""Follow hands, which come over the table from outside with their arms, from frame to frame."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.tracking.image import FrameImage
-
-HULL_SLACK = 0.03
-"""Distance in metres beyond the outline of the table from which a point is not above it."""
-
-MIN_OUTSIDE_PIXELS = 12
-"""Number of pixels at the border of the image or beyond the table from which a surface comes from outside."""
-
-MAX_OUTLINE_POINTS = 5000
-"""Number of points of one frame by which the outline is extended."""
+from deixis.perception.tracking.frames.image import FrameImage
+from deixis.perception.tracking.table.outline import MIN_OUTSIDE_PIXELS, Outline
+from deixis.perception.tracking.table.reference import GAP, Changes
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 HAND_MARGIN = 4
 """Distance in pixels from a hand within which surfaces are taken for parts of the hand."""
-
-GAP = 0.025
-"""Difference of depths in metres at which neighbouring pixels belong to different surfaces."""
 
 TIP = 0.03
 """Length in metres of the end of a hand whose mean is its place."""
@@ -34,67 +27,11 @@ MAX_STEP = 0.25
 MAX_CHANGE = 0.06
 """Largest difference in metres of two steps of a hand; beyond it, a thing joined or left the surface of the hand."""
 
+LOW = 0.03
+"""Height in metres above the table below which a surface that comes into view may lie on it."""
+
 REACH = 0.12
 """Distance in metres from the end of a hand within which it holds the side of a thing."""
-
-
-class Outline:
-    """Convex outline of the table in plan, which grows as more of it comes into view."""
-
-    def __init__(self) -> None:
-        self._corners = np.zeros((0, 2))
-        self._sides = np.zeros((0, 3))
-
-    def extend(self, plan: NDArray[np.float64]) -> None:
-        """Extend the outline by places on the table.
-
-        Parameters
-        ----------
-        plan
-            Places of shape (n, 2) in the table's frame, in metres.
-        """
-        from deixis.perception.detection.outline import hull_of
-
-        plan = np.concatenate([self._corners, plan[:: max(1, len(plan) // MAX_OUTLINE_POINTS)]])
-        hull = hull_of(plan) if len(plan) >= 3 else None
-        if hull is None:
-            self._corners, self._sides = plan, np.zeros((0, 3))
-        else:
-            self._corners, self._sides = plan[hull.vertices], np.asarray(hull.equations)
-
-    def beyond(self, plan: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Find the places that are not above the table.
-
-        Parameters
-        ----------
-        plan
-            Places of shape (n, 2) in the table's frame, in metres.
-
-        Returns
-        -------
-        ndarray
-            Mask of shape (n,); all False while no outline is known.
-        """
-        if not len(self._sides):
-            return np.zeros(len(plan), np.bool_)
-        with np.errstate(invalid="ignore"):
-            outside = (plan @ self._sides[:, :2].T + self._sides[:, 2]).max(axis=1)
-        return np.asarray(outside > HULL_SLACK)
-
-    def is_crossed_by(self, points: NDArray[np.float64]) -> bool:
-        """Return True if a surface comes from beyond the table.
-
-        Parameters
-        ----------
-        points
-            Points of the surface, shape (n, 3), in the table's frame, in metres.
-
-        Returns
-        -------
-        bool
-            False for a thing whose edge is a little beyond.
-        """
-        return bool(self.beyond(points[:, :2]).sum() > max(MIN_OUTSIDE_PIXELS, 0.2 * len(points)))
 
 
 class Hands:
@@ -106,20 +43,28 @@ class Hands:
         self._steps = np.zeros((0, 3))
 
     def see(
-        self, image: FrameImage, changed: NDArray[np.bool_], outline: Outline, back: NDArray[np.float64]
+        self,
+        image: FrameImage,
+        changes: Changes,
+        outline: Outline,
+        back: NDArray[np.float64],
+        resting: Iterable[Pipeline] = (),
     ) -> NDArray[np.bool_]:
         """Find the hands in a frame.
 
+        A camera that moves brings things into view at the border of the image, where nothing is known yet. Pixels
+        without a reference therefore do not show a hand there if they are low, or within the box of a thing at rest.
+
         Parameters
         ----------
-        image
-            The frame.
-        changed
-            Mask (r, c) of the pixels that are not as in the reference.
+        image, changes
+            The frame, and its comparison with the reference.
         outline
             Outline of the table.
         back
             Transform (4, 4) from the frame of the cloud to that of the table.
+        resting
+            Things at rest.
 
         Returns
         -------
@@ -128,14 +73,19 @@ class Hands:
         """
         from scipy.ndimage import binary_dilation
 
-        from deixis.perception.tracking.kernels import connected
+        from deixis.perception.tracking.kernels import UNKNOWN, connected
 
-        of, count = connected(changed & (image.depth > 0), image.depth, np.float32(GAP))
+        of, count = connected(~changes.same & (image.depth > 0), image.depth, np.float32(GAP))
         pixels = np.flatnonzero(of)
         points, owner = image.places(pixels, back), of.ravel()[pixels]
         row, column = np.divmod(pixels, of.shape[1])
         border = (row < 2) | (column < 2) | (row >= of.shape[0] - 2) | (column >= of.shape[1] - 2)
-        root = border | outline.beyond(points[:, :2])
+        beyond = outline.beyond(points[:, :2])
+        new = np.flatnonzero((border | beyond) & (changes.state.ravel()[pixels] == UNKNOWN))
+        border[new] &= points[new, 2] > LOW
+        root = border | beyond
+        for thing in resting:
+            root[new] &= ~thing.contains(points[new], thing.settings.margin)
         from_outside = np.bincount(owner, root, minlength=count + 1) >= MIN_OUTSIDE_PIXELS
         from_outside[0] = False
         self._move_to([_tip(points[owner == k], root[owner == k]) for k in np.flatnonzero(from_outside)])

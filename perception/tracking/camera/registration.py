@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from deixis.perception.tracking.image import FrameImage, Optics
+from deixis.perception.tracking.frames.image import FrameImage, Optics
 
 ITERATIONS = (6, 5, 4)
 """Largest number of steps at a quarter and at half of the resolution, and at the whole one."""
@@ -93,7 +93,7 @@ def normal_equations(  # type: ignore[no-untyped-def]
     turn, shift
         Pose of the frame: rotation (3, 3) and translation (3,) to the table's frame.
     matrix, eye, rays
-        Camera as in :class:`~deixis.perception.tracking.image.Optics`, and the inverse of its matrix.
+        Camera as in :class:`~deixis.perception.tracking.frames.image.Optics`, and the inverse of its matrix.
     depth, brightness
         Images (r, c) of the new frame.
     sigma_depth, noise, sigma_tint

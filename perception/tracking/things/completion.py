@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.scene import turned_axes
-from deixis.perception.tracking.image import FrameImage, TableView
-from deixis.perception.tracking.pipeline import Pipeline, likeness
-from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Reference
+from deixis.perception.tracking.frames.image import FrameImage, TableView
+from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
+from deixis.perception.tracking.things.pipeline import Pipeline, likeness
 
 FLAT = 0.03
 """Height in metres below which a thing may have parts that are lost in the noise of the table."""
@@ -154,10 +154,23 @@ class FlatThing:
         Standard deviation of the depths of one frame at one metre.
     colour
         Distance of two colours in RGB from which they differ.
+    image
+        The frame.
+    changed
+        Mask (r, c) of the pixels at which the frame has shown something else than the reference for a while. Those
+        without an owner may show parts of the thing that came into view; the others may show something new.
     """
 
     def __init__(
-        self, thing: Pipeline, reference: Reference, view: TableView, eye: float, noise: float, colour: float
+        self,
+        thing: Pipeline,
+        reference: Reference,
+        view: TableView,
+        eye: float,
+        noise: float,
+        colour: float,
+        image: FrameImage,
+        changed: Mask,
     ) -> None:
         from scipy.ndimage import binary_dilation
 
@@ -179,14 +192,18 @@ class FlatThing:
         owners, counts = np.unique(self._owner[around & (self._owner != UNKNOWN_OWNER)], return_counts=True)
         carrier = int(owners[counts.argmax()]) if len(owners) else TABLE
         self._is_carried = carrier != TABLE
-        table = (self._owner == carrier) & (depth > 0) & np.isfinite(level)
-        bare = table & ~binary_dilation(self._seed, iterations=3)
+        fresh = changed[self._window] & (self._owner == UNKNOWN_OWNER) & (carrier == TABLE)
+        depth = np.where(fresh, image.depth[self._window], depth)
+        shade = np.where(fresh[..., None], image.colour[self._window], shade)
+        table = ((self._owner == carrier) | fresh) & (depth > 0) & np.isfinite(level)
+        bare = table & ~fresh & ~binary_dilation(self._seed, iterations=3)
         if bare.sum() < MIN_TABLE_PIXELS:
             self.is_seen = False
             return
         with np.errstate(invalid="ignore", divide="ignore"):
             self._height = np.where(table, eye * (1 - depth / level), 0.0)
-            self._noise = np.where(table, REMAINING_NOISE * noise * depth**2 * eye / level, 0.0)
+            share = np.where(fresh, 1.0, REMAINING_NOISE)
+            self._noise = np.where(table, share * noise * depth**2 * eye / level, 0.0)
         ground = np.median(shade[bare], axis=0)
         tinted = np.linalg.norm(shade - ground, axis=-1) > colour
         every = shade.reshape(-1, 3)
@@ -195,7 +212,7 @@ class FlatThing:
         self._alike = tinted & alike.reshape(tinted.shape)
         self._others = ~np.isin(self._owner, (TABLE, carrier, UNKNOWN_OWNER)) & ~self._seed
         self._view, self._eye, self._level = view, eye, level
-        self._before = (self._others & (depth < level)) | (self._owner == UNKNOWN_OWNER)
+        self._before = (self._others & (depth < level)) | ((self._owner == UNKNOWN_OWNER) & ~fresh)
         self._line = self._own_line()
         self._hiding = self._line & self._before
         if self._is_carried:
@@ -248,7 +265,7 @@ class FlatThing:
         return far if far.sum() >= MIN_FAR_PART else np.zeros_like(known)
 
     def pieces(self, things: Iterable[Pipeline]) -> list[Pipeline]:
-        """Return the things that are pieces of this one, from which noise or a thing before it separates them.
+        """Return the things that are pieces of this one: the first look missed what lies between, or something hid it.
 
         Parameters
         ----------
@@ -272,9 +289,9 @@ class FlatThing:
             if not fits:
                 continue
             line = self._line if self._is_slender else self._line_to(thing)
-            hiding = line & self._before
-            reached = binary_propagation(self._seed, AROUND, self._seed | hiding | (line & self._others))
-            reached = binary_dilation(reached & (self._seed | hiding), AROUND, iterations=2)
+            between = self._seed | (line & (self._before | (self._candidate & self._alike)))
+            reached = binary_propagation(self._seed, AROUND, between | (line & self._others))
+            reached = binary_dilation(reached & between, AROUND, iterations=2)
             if not (reached & own).any() or (line & self._alike)[own].mean() < MIN_IN_LINE:
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]

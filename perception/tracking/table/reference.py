@@ -7,15 +7,27 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.tracking.image import FrameImage, TableView
-from deixis.perception.tracking.pipeline import Beneath
-from deixis.perception.tracking.table_colours import TableColours
+from deixis.perception.tracking.frames.image import FrameImage, TableView
+from deixis.perception.tracking.table.colours import TableColours
 
 TABLE, UNKNOWN_OWNER = 0, -1
 """Owners of pixels: the table and all beyond it, and nothing that is known. Things have their slots, from 1."""
 
+GAP = 0.025
+"""Difference of depths in metres at which neighbouring pixels belong to different surfaces."""
+
 LEARNING_RATE = 0.1
 """Share of a new measurement in the reference of an unchanged pixel."""
+
+
+@dataclass(frozen=True, eq=False)
+class Beneath:
+    """Content of the reference at pixels before a thing covered them: flat indices (k,), depths, colours and labels."""
+
+    pixels: NDArray[np.intp]
+    depth: NDArray[np.float32]
+    colour: NDArray[np.float32]
+    label: NDArray[np.int16]
 
 
 @dataclass(frozen=True, eq=False)

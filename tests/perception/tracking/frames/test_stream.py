@@ -12,8 +12,8 @@ from timing import BUSY_SECONDS
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.errors import CloudError
-from deixis.perception.tracking.frame import Frame
-from deixis.perception.tracking.stream import FolderSource, LatestFrames, recording
+from deixis.perception.tracking.frames.frame import Frame
+from deixis.perception.tracking.frames.stream import FolderSource, LatestFrames, recording
 
 
 def cloud(x: float) -> PointCloud:

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
-from deixis.perception.tracking.particles import ParticleFilter, kld_samples, systematic_resample, turned_by
 from deixis.perception.tracking.settings import ParticleSettings
+from deixis.perception.tracking.things.particles import ParticleFilter, kld_samples, systematic_resample, turned_by
 
 WEIGHTS = st.lists(st.floats(0, 1), min_size=1, max_size=20).filter(lambda weights: sum(weights) > 1e-3)
 

@@ -7,11 +7,11 @@ import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
-from deixis.perception.tracking.completion import FlatThing, revealed_part, stands_behind
-from deixis.perception.tracking.image import FrameImage, Optics, TableView, table_view
-from deixis.perception.tracking.pipeline import Pipeline
-from deixis.perception.tracking.reference import TABLE, Reference
+from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, table_view
 from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
+from deixis.perception.tracking.things.completion import FlatThing, revealed_part, stands_behind
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 SHAPE = 60, 120
 OPTICS = Optics(np.array([[200.0, 0, 59.5], [0, 200.0, 29.5], [0, 0, 1]]), np.zeros(3))
@@ -66,8 +66,12 @@ def thing_at(pixels: tuple[slice, slice], slot: int, colour: tuple[int, int, int
     return Pipeline(f"t{slot}", slot, cloud, np.array([length, width, 0.01]) / 2, box, pose, 0.0, TrackingSettings())
 
 
-def flat(thing: Pipeline, on: Table) -> FlatThing:
-    return FlatThing(thing, on.reference, view(), 1.0, 0.0015, 40.0)
+def flat(thing: Pipeline, on: Table, now: Table | None = None) -> FlatThing:
+    """Return a thing on a table, of which a frame shows what is there now."""
+    seen = now or on
+    image = FrameImage(np.zeros((*SHAPE, 3), np.float32), seen.depth, seen.colour, OPTICS)
+    changed = (seen.colour != on.colour).any(axis=2)
+    return FlatThing(thing, on.reference, view(), 1.0, 0.0015, 40.0, image, changed)
 
 
 def half_hidden_knife(end: tuple[int, int, int], row: int = 29) -> tuple[Table, Pipeline]:
@@ -130,6 +134,20 @@ def test_short_ends_of_one_thing_are_joined_behind_another() -> None:
     assert flat(thing_at(handle, 1), on).pieces([end]) == [end]
     lay(on, np.s_[15:45, 45:61], WOOD, TABLE)
     assert flat(thing_at(handle, 1), on).pieces([end]) == [], "nothing hides what is between them"
+
+
+def test_pieces_are_joined_by_their_middle_that_comes_into_view() -> None:
+    on, now = table(), table()
+    lay(on, np.s_[29:32, 42:45], STEEL, 2)
+    lay(on, np.s_[29:32, 61:66], STEEL, 1)
+    lay(now, np.s_[29:32, 42:66], STEEL, TABLE)
+    end, handle = thing_at(np.s_[29:32, 42:45], 2), thing_at(np.s_[29:32, 61:66], 1)
+    assert flat(handle, on, now).pieces([end]) == [], "something new may lie on the table between them"
+    on.owner[29:32, 45:61] = UNKNOWN_OWNER
+    assert flat(handle, on, now).pieces([end]) == [end]
+    on.owner[on.owner == 2] = 1
+    middle = flat(handle, on, now).missing_part()
+    assert set((middle % SHAPE[1]).tolist()) == set(range(45, 61))
 
 
 def test_end_of_a_spoon_on_a_plate_is_found() -> None:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.tracking.image import FrameImage, TableView
-from deixis.perception.tracking.pipeline import Pipeline
+from deixis.perception.tracking.frames.image import FrameImage, TableView
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 DIRECTIONS = 8
 """Number of directions about the vertical in which a thing is tried, beside those of the longest axis of the pixels."""

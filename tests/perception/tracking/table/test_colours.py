@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from deixis.perception.tracking.table_colours import TableColours
+from deixis.perception.tracking.table.colours import TableColours
 
 
 def checked_cloth() -> TableColours:

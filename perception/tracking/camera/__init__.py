@@ -1,0 +1,1 @@
+"""Pose of a camera that moves, from frame to frame, by registration with earlier frames."""

@@ -1,0 +1,87 @@
+"""Make the model of a thing, its points and its boxes, from an object of a detection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import Detection
+from deixis.perception.detection.outline import oriented_box
+from deixis.perception.detection.settings import OutlineSettings
+from deixis.perception.detection.table.viewpoint import moved
+from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.things.revolution import circle_around
+
+MIN_TURN = np.deg2rad(3.0)
+"""Angle in radians between two frames of a table from which the box of a thing is enlarged to hold the turned one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Points and boxes of a thing in its own frame, whose origin is the middle of the box.
+
+    ``half`` (3,) is half of the sides of the box, ``oriented`` is the box that is turned about the vertical, and
+    ``pose`` (4, 4) takes the thing's frame to the tracker's.
+    """
+
+    cloud: PointCloud
+    half: NDArray[np.float64]
+    oriented: OrientedBox
+    pose: NDArray[np.float64]
+
+
+def model_of(
+    found: Detection,
+    cloud: PointCloud,
+    points: NDArray[np.intp],
+    k: int,
+    change: NDArray[np.float64],
+    outlines: OutlineSettings,
+) -> Model:
+    """Return the model of one object of a detection; that of an upright round thing includes its hidden back.
+
+    Parameters
+    ----------
+    found
+        The detection.
+    cloud
+        Cloud of the frame.
+    points
+        Indices (n,) of the points of the object.
+    k
+        Number of the object.
+    change
+        Transform (4, 4) from the frame of the detection to the tracker's.
+    outlines
+        Share of outermost points that are noise.
+
+    Returns
+    -------
+    Model
+        Points, boxes and pose.
+    """
+    own = moved(moved(cloud.points[points].astype(np.float64), found.frame), change)
+    turn = float(np.arctan2(change[1, 0], change[0, 0]))
+    box = found.oriented[k]
+    centre = moved(np.array([box.centre]), change)[0]
+    middle = moved(found.boxes[k].mean(axis=0)[None], change)[0]
+    half = (found.boxes[k][1] - found.boxes[k][0]) / 2
+    if abs(turn) > MIN_TURN:
+        cosine, sine = abs(np.cos(turn)), abs(np.sin(turn))
+        half = np.array([cosine * half[0] + sine * half[1], sine * half[0] + cosine * half[1], half[2]])
+    around = OrientedBox(tuple(centre.tolist()), box.yaw + turn, box.extents)
+    circle = circle_around(own)
+    if circle is not None:  # its back is hidden
+        corners = np.stack([middle - half, middle + half])
+        corners[0, :2] = np.minimum(corners[0, :2], circle.centre - circle.radius)
+        corners[1, :2] = np.maximum(corners[1, :2], circle.centre + circle.radius)
+        middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
+        around = oriented_box(own, outlines, circle)
+    pose = np.eye(4)
+    pose[:3, 3] = middle
+    oriented = OrientedBox(tuple((np.array(around.centre) - middle).tolist()), around.yaw, around.extents)
+    colours = None if cloud.colours is None else cloud.colours[points]
+    return Model(PointCloud((own - middle).astype(np.float32), colours), half, oriented, pose)

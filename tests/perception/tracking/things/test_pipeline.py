@@ -1,0 +1,41 @@
+"""Pipelines of things: their poses at rest."""
+
+import numpy as np
+import pytest
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view
+from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.things.pipeline import Pipeline
+
+SHAPE = 120, 160
+OPTICS = Optics(np.array([[200.0, 0, 79.5], [0, 200.0, 59.5], [0, 0, 1]]), np.zeros(3))
+BACK = np.diag([1.0, -1.0, -1.0, 1.0])
+BACK[2, 3] = 1.0  # the camera is one metre above the table and looks down: a pixel is 5 mm
+WOOD, RED = (140, 105, 73), (130, 40, 50)
+NAPKIN = np.s_[40:80, 50:110]
+
+
+def test_pose_at_rest_is_that_of_all_pixels_of_the_thing() -> None:
+    depth = np.ones(SHAPE, np.float32)
+    depth[NAPKIN] = 0.99
+    colour = np.broadcast_to(WOOD, (*SHAPE, 3)).astype(np.float32)
+    colour[NAPKIN] = RED
+    rows, columns = np.indices(SHAPE)
+    rays = np.stack([(columns - 79.5) / 200, (rows - 59.5) / 200, np.ones(SHAPE)], axis=-1)
+    image = FrameImage((rays * depth[..., None]).astype(np.float32), depth, colour, OPTICS)
+    own = image.places(np.flatnonzero(depth < 1), BACK)
+    middle = (own.min(axis=0) + own.max(axis=0)) / 2
+    sides = np.append(np.ptp(own, axis=0)[:2], 0.01)
+    pose = np.eye(4)
+    pose[:3, 3] = middle + np.array([0.012, -0.015, 0.0])
+    cloud = PointCloud((own - middle).astype(np.float32), np.tile(np.array(RED, np.uint8), (len(own), 1)))
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, tuple(sides.tolist()))
+    napkin = Pipeline("t1", 1, cloud, sides / 2, box, pose, 0.0, TrackingSettings())
+    hidden = rows > 70  # one of its edges
+    depth[hidden] = 0.5
+    seen = image.places(np.flatnonzero((colour == RED).all(axis=-1) & ~hidden), BACK)
+    napkin.align(image, table_view(OPTICS, BACK, SHAPE), depth == 1.0, seen, 0.0015)
+    assert napkin.pose[:2, 3] == pytest.approx(middle[:2], abs=0.004)
+    assert napkin.last_rest is napkin.pose
