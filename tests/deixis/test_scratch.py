@@ -17,6 +17,7 @@ from deixis.scratch import ScratchFolder, remove_stale, scratch_folder
 WAITING = """
 import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts background jobs with SIGINT ignored
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup ignores it
 from deixis.reasoning.description_logic import reasoners
 reasoners._java = lambda arguments: ["sleep", "600"]  # a reasoner that takes long
 reasoners.classify("")
@@ -89,7 +90,15 @@ def test_only_scratch_folders_are_removed(temporary: Path) -> None:
 
 
 def test_signals_are_handled_as_before_once_the_work_is_done(temporary: Path) -> None:
-    before = [signal.getsignal(number) for number in scratch.ENDING_SIGNALS]
-    with scratch_folder():
-        assert all(signal.getsignal(number) not in before for number in scratch.ENDING_SIGNALS)
-    assert [signal.getsignal(number) for number in scratch.ENDING_SIGNALS] == before
+    before = {number: signal.signal(number, signal.SIG_DFL) for number in scratch.ENDING_SIGNALS}
+    first = scratch.ENDING_SIGNALS[0]
+    try:
+        with scratch_folder():
+            assert all(callable(signal.getsignal(number)) for number in scratch.ENDING_SIGNALS)
+        assert all(signal.getsignal(number) is signal.SIG_DFL for number in scratch.ENDING_SIGNALS)
+        signal.signal(first, signal.SIG_IGN)
+        with scratch_folder():
+            assert signal.getsignal(first) is signal.SIG_IGN
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
