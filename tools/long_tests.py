@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-LONG = 2.0
+LONG = 1.5
 """Processor time in seconds from which a test is long."""
 
 ROOT = Path(__file__).parents[1]
