@@ -47,10 +47,10 @@ CASES = [
     ("why_not", "infer {t}/tea.layout --why-not 'left(fork, knife)'"),
     ("why_not", "infer {t}/tea.layout --why-not 'right(fork, knife)'"),
     ("why_not", "infer {t}/tea.layout --why-not 'above(fork, knife)'"),
-    ("learned", "learn {e}/formal_dinner.layout {e}/place_setting.scene.json --memory {t}/other"),
+    ("learned", "learn {e}/formal_dinner.layout {e}/place_setting.scene.json --memory {t}/new"),
     (
         "learned",
-        "learn {e}/script1.layout {t}/table.scene.json {e}/script2.layout {t}/table.scene.json --memory {t}/other",
+        "learn {e}/script1.layout {t}/table.scene.json {e}/script2.layout {t}/table.scene.json --memory {t}/new",
     ),
     ("learned_relations", "learn-relation -o {t}/models.ttl"),
     ("learned_relations", "learn-relation --reset --memory {t}/other"),
@@ -149,6 +149,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     deixis_command("simulate", script, "--seed", 7, "-o", folder / "table.pcd")
     deixis_command("perceive", folder / "table.pcd", "-o", folder / "table.scene.json")
     deixis_command("learn", script, folder / "table.scene.json", "--memory", folder / "memory")
+    deixis_command("learn", script, EXAMPLES / "place_setting.scene.json", "--memory", folder / "other")
     served = EXAMPLES / "serving.fluents.json"
     deixis_command("activity", "learn", "serving", served, "--known", folder / "known.json")
     place = {"id": "a", "statement": ["cup", "at", "[0, 0, 0.1, 0.1]"], "start": [0, 1]}
