@@ -204,6 +204,17 @@ def connected(mask, depth, gap):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
+def _rotation(turn):  # type: ignore[no-untyped-def]
+    """Return the rows of the rotation matrix of a unit quaternion (4,), real part first."""
+    w, x, y, z = turn
+    return (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+
+
+@njit(cache=True, nogil=True)
 def scores(  # type: ignore[no-untyped-def]
     places, turns, points, colours, matrix, offset, depth, colour, taken, tolerance, noise, shade, spread, hidden, empty
 ):
@@ -237,10 +248,7 @@ def scores(  # type: ignore[no-untyped-def]
     found = np.zeros(len(places))
     seen = np.zeros((len(places), 3))
     for p in range(len(places)):
-        w, x, y, z = turns[p]
-        r00, r01, r02 = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
-        r10, r11, r12 = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
-        r20, r21, r22 = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+        (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = _rotation(turns[p])
         total = 0.0
         for i in range(len(points)):
             a, b, c = points[i]
@@ -310,10 +318,7 @@ def covered(places, turns, points, centre, yaw, half):  # type: ignore[no-untype
     cosine, sine = np.cos(yaw), np.sin(yaw)
     found = np.zeros(len(places))
     for p in range(len(places)):
-        w, x, y, z = turns[p]
-        r00, r01, r02 = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
-        r10, r11, r12 = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
-        r20, r21, r22 = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+        (r00, r01, r02), (r10, r11, r12), (r20, r21, r22) = _rotation(turns[p])
         count = 0
         for i in range(len(points)):
             u, v, t = points[i, 0] - places[p, 0], points[i, 1] - places[p, 1], points[i, 2] - places[p, 2]

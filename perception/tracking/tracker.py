@@ -742,10 +742,13 @@ class Tracker:
         def flat() -> FlatThing:
             return FlatThing(thing, reference, view, eye, self._noise, limits.colour, image, changed)
 
-        merged = flat().pieces(other for other in self._things if other is not thing)
+        seen = flat()
+        merged = seen.pieces(other for other in self._things if other is not thing)
         parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
-        reference.owner.ravel()[parts] = thing.slot
-        new = flat().missing_part()
+        if merged:
+            reference.owner.ravel()[parts] = thing.slot
+            seen = flat()
+        new = seen.missing_part()
         reference.owner.ravel()[new] = thing.slot
         reference.give(new[changed.ravel()[new]], thing.slot, image)
         new = np.union1d(np.union1d(new, parts), revealed_part(thing, reference, view))

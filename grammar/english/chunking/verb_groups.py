@@ -594,8 +594,10 @@ class VerbChunker(RelatorChunker):
 _RARELY = word_set("rarely seldom hardly scarcely")
 
 _GETTING = word_set("get gets got getting")
-_RECEIVERS = word_set("you me him her us them")
 """Verbs that make a passive, as *be* does."""
+
+_RECEIVERS = word_set("you me him her us them")
+"""Pronouns between a verb and its object: *left you a cake*."""
 
 _TOLD = word_set("it they he she there")
 

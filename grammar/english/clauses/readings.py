@@ -76,8 +76,10 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
     >>> settled(sentence, [(sentence, True)]).contested
     frozenset()
     """
-    kept, said = first, _Said.by(first)
     rivals = [(_Said.by(other), other, in_conjunction) for other, in_conjunction in others]
+    if not rivals:
+        return first
+    kept, said = first, _Said.by(first)
     guessed = any(clause.guesses for clause in first.clauses) or bool(first.guesses)
     for theirs, other, _ in rivals:
         simpler = (theirs.odd, theirs.number) < (said.odd, said.number) and theirs.number <= said.number

@@ -312,9 +312,9 @@ class Pipeline:
             return
         moved, turned = np.zeros((1, 3)), _quaternion(self.pose)[None]
         best = first = float(weigh(self.pose[None, :3, 3], turned)[0])
-        step = np.array(ALIGN_STEP)
+        step, directions = np.array(ALIGN_STEP), np.array(list(itertools.product((-1, 0, 1), repeat=3)))
         while step[0] >= ALIGN_END:
-            tried = moved + step * np.array(list(itertools.product((-1, 0, 1), repeat=3)))
+            tried = moved + step * directions
             places = self.pose[:3, 3] + np.column_stack([tried[:, :2], np.zeros(len(tried))])
             scores = weigh(places, turned_by(np.outer(tried[:, 2], (0.0, 0.0, 1.0)), turned.repeat(len(tried), axis=0)))
             if scores.max() > best:

@@ -22,7 +22,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole
 from deixis.reasoning.grounding.hypotheses.hypotheses import STATED_SIDES, Side, side_text, weigh
 from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.matching.search.coarse_to_fine import MIN_COARSE_THINGS
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import is_large
 from deixis.reasoning.grounding.matching.search.exact import exact
 from deixis.reasoning.grounding.matching.search.scalable import scalable
 
@@ -113,8 +113,8 @@ class ScalableEngine:
         Alignment
             The alignment, which is not proved to be the best.
         """
-        is_large = len(evidence.scene.nodes) > MIN_COARSE_THINGS
-        found = scalable(evidence.problem, deadline.share(LARGE_SEARCH_SHARE if is_large else SEARCH_SHARE))
+        share = LARGE_SEARCH_SHARE if is_large(evidence.problem.compiled) else SEARCH_SHARE
+        found = scalable(evidence.problem, deadline.share(share))
         notes = () if found.finished else ("time limit reached before the search ended",)
         return _answer("scalable", self, evidence, found.assignment, deadline, notes, finished=found.finished)
 

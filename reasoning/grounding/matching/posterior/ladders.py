@@ -32,7 +32,7 @@ from deixis.reasoning.grounding.matching.posterior.sampling import (
 )
 from deixis.reasoning.grounding.matching.posterior.starts import Starts, starts_of
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem
-from deixis.reasoning.grounding.matching.search.coarse_to_fine import MIN_COARSE_THINGS, CoarseToFine
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import CoarseToFine, is_large
 
 Array = NDArray[np.float64]
 
@@ -295,7 +295,7 @@ def _start(
     problem: Compiled, coldness: Array, deadline: Deadline, seed: int, places: NDArray[np.float32] | None = None
 ) -> tuple[_Run, Array]:
     """Return a run at those temperatures (K,), and the beliefs (n1, n2 + 1) that guide it."""
-    share = COARSE_GUIDE_SHARE if problem.unary.shape[1] > MIN_COARSE_THINGS else GUIDE_SHARE
+    share = COARSE_GUIDE_SHARE if is_large(problem) else GUIDE_SHARE
     starts = starts_of(problem, places, deadline.share(share))
     ladders, beliefs = tuple(new_chains(problem, coldness) for _ in range(LADDERS)), starts.beliefs
     guide = guide_by(beliefs, problem.allowed)

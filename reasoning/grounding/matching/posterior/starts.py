@@ -22,8 +22,8 @@ from threadpoolctl import threadpool_limits
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.posterior.sampling import map_value
 from deixis.reasoning.grounding.matching.problem import Compiled
-from deixis.reasoning.grounding.matching.search.belief_propagation import beliefs_with_places, one_to_one
-from deixis.reasoning.grounding.matching.search.coarse_to_fine import MIN_COARSE_THINGS, CoarseToFine
+from deixis.reasoning.grounding.matching.search.belief_propagation import beliefs_with_places, likeliest_map
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import CoarseToFine, is_large
 
 Array = NDArray[np.float64]
 
@@ -65,7 +65,7 @@ class Starts:
     @property
     def is_large(self) -> bool:
         """True if belief propagation went from coarse to fine, because the scene is large."""
-        return bool(self.problem.unary.shape[1] > MIN_COARSE_THINGS)
+        return is_large(self.problem)
 
     @property
     def beliefs(self) -> Array:
@@ -111,7 +111,7 @@ def starts_of(problem: Compiled, places: NDArray[np.float32] | None, deadline: D
         The beliefs and the problem with the places of absent objects.
     """
     with threadpool_limits(1, "blas"):
-        if problem.unary.shape[1] <= MIN_COARSE_THINGS:
+        if not is_large(problem):
             beliefs, placed = beliefs_with_places(problem, places, deadline)
             return Starts(placed, (beliefs,), np.array([0.0]))
         propagation, before = CoarseToFine(problem, places), deadline.left
@@ -126,7 +126,7 @@ def starts_of(problem: Compiled, places: NDArray[np.float32] | None, deadline: D
 
 def _with_run(starts: Starts | None, beliefs: NDArray[np.float32], placed: Compiled) -> Starts:
     """Return the starts with one more run: its beliefs (n1, n2 + 1), and the problem with its places."""
-    value = map_value(one_to_one(np.log(np.maximum(beliefs, np.float32(1e-12))), placed), placed)
+    value = map_value(likeliest_map(beliefs, placed), placed)
     if starts is None:
         return Starts(placed, (beliefs,), np.array([value]))
     best = placed if value > starts.values.max() else starts.problem

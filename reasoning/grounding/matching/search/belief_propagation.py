@@ -44,7 +44,7 @@ Messages = NDArray[np.float32]
 
 
 class _Wiring(NamedTuple):
-    """Slots (see ``compiled.py``) sorted by the table that they read."""
+    """Slots (see ``problem.py``) sorted by the table that they read."""
 
     slot: NDArray[np.int64]  # (2m,): the slot of the problem
     owner: NDArray[np.int64]  # (2m,): the object of the slot
@@ -101,7 +101,7 @@ def propagate(
         if left <= MIN_LEVELS * (now - before) * (1.0 - done):
             return None
         done += max(1.0 / levels, (now - before) / left)
-    return one_to_one(belief, problem)
+    return _one_to_one(belief, problem)
 
 
 def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: int = STEPS) -> Messages:
@@ -387,13 +387,13 @@ def _normalised(messages: Messages) -> Messages:
     return messages
 
 
-def one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
-    """Return the map with the largest product of beliefs.
+def likeliest_map(beliefs: Messages, problem: Compiled) -> NDArray[np.int64]:
+    """Return the map with the largest product of probabilities.
 
     Parameters
     ----------
-    belief
-        Logarithms of the probabilities of matches, shape (n1, n2 + 1), up to a constant for each object.
+    beliefs
+        Probability of each match, shape (n1, n2 + 1).
     problem
         The problem in the layout of compiled loops.
 
@@ -402,6 +402,11 @@ def one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
     ndarray
         Thing of each object, shape (n1,), with n2 for objects that are left out.
     """
+    return _one_to_one(np.log(np.maximum(beliefs, np.float32(1e-12))), problem)
+
+
+def _one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
+    """Return the map with the largest sum of log beliefs."""
     gain = np.where(problem.allowed, belief.astype(np.float64), -np.inf)
     labels, price, profit = np.empty(len(gain), np.int64), np.empty(gain.shape[1] - 1), np.empty(len(gain))
     solve_assignment(gain, labels, price, profit)

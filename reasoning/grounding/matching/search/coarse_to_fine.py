@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
 MIN_COARSE_THINGS = 200
-"""Number of things above which belief propagation goes from coarse to fine."""
+"""Number of things from which belief propagation goes from coarse to fine."""
 
 FIRST_CELLS, KEPT_CELLS = 64, 48
 """Minimum number of cells at the first level, and number of cells that an object keeps before they are divided."""
@@ -58,6 +58,22 @@ likeliest candidate, below which the messages about a candidate stay as they are
 
 PROJECTIONS, COMPONENTS = 16, 6
 """Random projections of each table, and principal components of the projections, by which things are divided."""
+
+
+def is_large(problem: Compiled) -> bool:
+    """Return True if belief propagation on a problem goes from coarse to fine.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    bool
+        False for a scene of fewer things than :data:`MIN_COARSE_THINGS`.
+    """
+    return bool(problem.unary.shape[1] > MIN_COARSE_THINGS)
 
 
 class _Cells(NamedTuple):

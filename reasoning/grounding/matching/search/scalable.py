@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem, to_assignment, to_labels
-from deixis.reasoning.grounding.matching.search.belief_propagation import one_to_one, propagate
-from deixis.reasoning.grounding.matching.search.coarse_to_fine import MIN_COARSE_THINGS, CoarseToFine
+from deixis.reasoning.grounding.matching.search.belief_propagation import likeliest_map, propagate
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import CoarseToFine, is_large
 from deixis.reasoning.grounding.matching.search.local_search import (
     NOISE_TABLE_SIZE,
     anneal,
@@ -215,9 +215,9 @@ def _propagated(
     Where cooled belief propagation takes too long in a large scene, the map is that of beliefs from coarse to fine.
     """
     found = propagate(compiled, mean_range(compiled), deadline.share(0.5), effort=effort, seed=seed)
-    if found is None and len(compiled.unary[0]) > MIN_COARSE_THINGS and not deadline.passed:
+    if found is None and is_large(compiled) and not deadline.passed:
         beliefs, _ = CoarseToFine(compiled, None).beliefs(deadline.share(0.5), seed=seed)
-        found = one_to_one(np.log(np.maximum(beliefs, np.float32(1e-12))), compiled)
+        found = likeliest_map(beliefs, compiled)
     if found is None:
         return _annealed(labels, compiled, deadline, seed + 1, effort, most)
     climb(found, compiled)

@@ -11,21 +11,21 @@ from matching_problems import problems
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
-from deixis.reasoning.grounding.matching.posterior import ladders, starts
+from deixis.reasoning.grounding.matching.posterior import starts
 from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
 from deixis.reasoning.grounding.matching.posterior.ladders import log_evidence, sampled_marginals
 from deixis.reasoning.grounding.matching.posterior.posterior import exact_posterior
 from deixis.reasoning.grounding.matching.posterior.sampling import map_value
 from deixis.reasoning.grounding.matching.posterior.starts import Starts, starts_of
 from deixis.reasoning.grounding.matching.problem import Problem, to_labels
+from deixis.reasoning.grounding.matching.search import coarse_to_fine
 
 NEVER = Deadline.never()
 
 
 @pytest.fixture
 def _all_are_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(starts, "MIN_COARSE_THINGS", 0)
-    monkeypatch.setattr(ladders, "MIN_COARSE_THINGS", 0)
+    monkeypatch.setattr(coarse_to_fine, "MIN_COARSE_THINGS", 0)
 
 
 @pytest.mark.usefixtures("_all_are_large")
@@ -56,7 +56,7 @@ def test_log_evidence_does_not_depend_on_the_starts(monkeypatch: pytest.MonkeyPa
     table = generate(8, missing=1, extra=1, seed=2)
     problem = no_unary_evidence(table.description(), table.scene()).problem
     dense, first_error = log_evidence(problem)
-    monkeypatch.setattr(starts, "MIN_COARSE_THINGS", 0)
+    monkeypatch.setattr(coarse_to_fine, "MIN_COARSE_THINGS", 0)
     value, error = log_evidence(problem)
     assert value == pytest.approx(dense, abs=max(0.5, 4 * (first_error + error)))
 
