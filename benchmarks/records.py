@@ -19,6 +19,7 @@ import os
 import platform
 import statistics
 import subprocess
+import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -36,8 +37,11 @@ MEASURED = ("ontology", "reasoning", "grammar", "perception", "memory", "src", "
 KEPT = 5
 """Number of recordings that a file keeps."""
 
-BUSY = 0.5
-"""Load average per core from which on times are left out."""
+BUSY = 0.25
+"""Programs that run beside the benchmark, per core, from which on times are left out."""
+
+RUNNING = Path("/proc/loadavg")
+"""Linux's file with the number of programs that run now, the reader included."""
 
 NORMAL_95 = 1.96
 """Half of the 95 per cent interval of a normal distribution, in standard deviations."""
@@ -298,8 +302,19 @@ def machine_class() -> str:
 
 
 def is_busy() -> bool:
-    """Return whether other programs load the machine so that times mean little."""
-    return os.getloadavg()[0] > BUSY * len(os.sched_getaffinity(0))
+    """Return whether other programs load the machine so that times mean little.
+
+    Linux tells how many programs run at this moment; elsewhere the load of the last minute decides, which includes a
+    benchmark that has just ended.
+    """
+    running = os.getloadavg()[0]
+    if RUNNING.exists():
+        samples = []
+        for _ in range(20):
+            time.sleep(0.1)
+            samples.append(int(RUNNING.read_text(encoding="ascii").split()[3].split("/")[0]) - 1)
+        running = statistics.fmean(samples)
+    return running > BUSY * len(os.sched_getaffinity(0))
 
 
 def measured_commit() -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import sys
 from pathlib import Path
@@ -87,6 +88,18 @@ def test_a_busy_machine_records_no_seconds(here: Run, monkeypatch: pytest.Monkey
     monkeypatch.setattr(records, "is_busy", lambda: True)
     measure("--record", "--size", "12")
     assert [each.unit for each in records.read(here)[0].figures] == ["share", "times as long", "count"]
+
+
+@pytest.mark.parametrize(("running", "busy"), [("1/75", False), ("3/77", True)])
+def test_busy_means_that_other_programs_run_now(
+    running: str, busy: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = tmp_path / "loadavg"
+    now.write_text(f"9.00 9.00 9.00 {running} 16904\n")
+    monkeypatch.setattr(records, "RUNNING", now)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
+    monkeypatch.setattr("time.sleep", lambda _: None)
+    assert records.is_busy() is busy
 
 
 def test_the_page_shows_the_change_since_the_last(here: Run, monkeypatch: pytest.MonkeyPatch) -> None:
