@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -56,6 +57,14 @@ CASES = [
     ("learned_relations", "learn-relation --reset --memory {t}/other"),
     ("learned_relations", "learn-relation --descriptions {t}/said.jsonl -o {t}/weights.json"),
     ("lint", "lint {e}/contradiction.layout"),
+    ("category_changed", "category rename dinner_plate charger --memory {t}/changed"),
+    ("category_changed", "category merge salad_fork dinner_fork --memory {t}/changed"),
+    ("category_changed", "category forget dinner_fork --memory {t}/changed"),
+    ("memory_imported", "memory import {t}/changed.trig --memory {t}/imported"),
+    ("memory_imported", "memory import {t}/changed.zip --memory {t}/imported"),
+    ("memory_imported", "memory import {t}/watched.episodes.json --memory {t}/imported"),
+    ("memory_forgotten", "memory forget formal_dinner-1 --memory {t}/changed"),
+    ("learned_activity", "activity learn again {t}/all.fluents.json --known {t}/again.json"),
     ("memory_stats", "memory stats"),
     ("memory_stats", "memory stats --memory {t}/other"),
     ("memory_verified", "memory verify"),
@@ -150,6 +159,9 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     deixis_command("perceive", folder / "table.pcd", "-o", folder / "table.scene.json")
     deixis_command("learn", script, folder / "table.scene.json", "--memory", folder / "memory")
     deixis_command("learn", script, EXAMPLES / "place_setting.scene.json", "--memory", folder / "other")
+    changed = ("--memory", shutil.copytree(folder / "memory", folder / "changed"))
+    deixis_command("memory", "export", "-o", folder / "changed.trig", *changed)
+    deixis_command("memory", "export", "--format", "views", "-o", folder / "changed.zip", *changed)
     served = EXAMPLES / "serving.fluents.json"
     deixis_command("activity", "learn", "serving", served, "--known", folder / "known.json")
     place = {"id": "a", "statement": ["cup", "at", "[0, 0, 0.1, 0.1]"], "start": [0, 1]}
@@ -162,6 +174,16 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
         seen = Source(Origin.SEEN, "tracker")
         board.add(episodic("f1", ("t1", "isA", "cup"), start=0.0, source=seen), by="tracker")
         board.add(episodic("f2", ("t1", "on", "table"), start=Bounds(-1.0, 0.0), source=seen), by="tracker")
+    deixis_command(
+        "memory",
+        "export",
+        "--format",
+        "episodes",
+        "-o",
+        folder / "watched.episodes.json",
+        "--memory",
+        folder / "watched",
+    )
     for thing in ("t1", "t2", "t3"):
         deixis_command("episodes", "add", thing, "on", "table", "--start", 1, "--memory", folder / "told")
     deixis_command("episodes", "record", "second table", "--at", 0, "--memory", folder / "told")

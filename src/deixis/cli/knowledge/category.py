@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,6 +18,9 @@ from deixis.cli.common import (
 )
 from deixis.cli.completion import complete_categories
 from deixis.cli.output import note_change
+
+if TYPE_CHECKING:
+    from deixis.session import Session
 
 category_app = typer.Typer(help="List, rename, merge or forget taught categories.", no_args_is_help=True)
 
@@ -46,6 +49,7 @@ def rename(
     old: Annotated[str, typer.Argument(metavar="OLD", help="The present name.", autocompletion=complete_categories)],
     new: Annotated[str, typer.Argument(metavar="NEW", help="The new name.")],
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Give a category another name; its views stay."""
     from deixis.session import Session
@@ -54,7 +58,10 @@ def rename(
     name = new_category_name(new)
     with Session(memory) as session:
         session.rename_category(old, name)
-    note_change(session.path)
+        note_change(session.path)
+        if as_json:
+            _print_change(session, category_name(old), name)
+            return
     print_line(f"'{category_name(old)}' is now '{name}'.")
 
 
@@ -68,6 +75,7 @@ def merge(
         typer.Argument(metavar="INTO", help="The category that gets its views.", autocompletion=complete_categories),
     ],
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Move the views of one category to another, for two words with one meaning."""
     from deixis.session import Session
@@ -75,7 +83,10 @@ def merge(
 
     with Session(memory) as session:
         session.merge_categories(source, into)
-    note_change(session.path)
+        note_change(session.path)
+        if as_json:
+            _print_change(session, category_name(source), category_name(into))
+            return
     print_line(f"The views of '{category_name(source)}' now belong to '{category_name(into)}'.")
 
 
@@ -85,6 +96,7 @@ def forget_category(
         str, typer.Argument(metavar="CATEGORY", help="The category to forget.", autocompletion=complete_categories)
     ],
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Forget a category with all its views."""
     from deixis.session import Session
@@ -92,5 +104,14 @@ def forget_category(
 
     with Session(memory) as session:
         session.forget_category(name)
-    note_change(session.path)
+        note_change(session.path)
+        if as_json:
+            _print_change(session, category_name(name), None)
+            return
     print_line(f"Forgotten: {category_name(name)}.")
+
+
+def _print_change(session: Session, before: str, category: str | None) -> None:
+    """Print as JSON which category the views of ``before`` have now, None if they are forgotten."""
+    views = 0 if category is None else session.categories()[category]
+    print_json({"before": before, "category": category, "views": views})

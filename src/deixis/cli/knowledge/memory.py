@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -114,6 +114,7 @@ def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None
 def import_(
     dump: Annotated[Path, typer.Argument(metavar="FILE", help="An exported file, or triples in another format.")],
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Add exported content to the memory; what the memory has stays."""
     from deixis.errors import DeixisError
@@ -129,24 +130,30 @@ def import_(
         where = memory or default_memory()
         with progress_bar("importing") as progress:
             done = import_all(dump, where, progress)
-        note_change(where)
-        print_line(f"Imported {dump} into the memory {where}.")
-        if done.relearn:
-            print_line(f"These categories must be learned again from their views: {', '.join(done.relearn)}.")
-        return
-    if has_ending(dump):
+        _print_imported(dump, where, "views", as_json, learn_again=done.relearn)
+    elif has_ending(dump):
         where = memory or default_memory()
-        number = import_file(where, dump)
-        note_change(where)
-        print_line(f"Imported {number} fluents of {dump} into the memory {where}.")
-        return
-    if dump.suffix.lower() not in FORMATS:
+        _print_imported(dump, where, "episodes", as_json, fluents=import_file(where, dump))
+    elif dump.suffix.lower() in FORMATS:
+        with Session(memory) as session:
+            session.import_(dump)
+            _print_imported(dump, session.path, "concepts", as_json)
+    else:
         endings = ", ".join((*FORMATS, ".zip (views)"))
         raise DeixisError(f"{dump}: unknown format; its name must end in {endings} or {ENDING}")
-    with Session(memory) as session:
-        session.import_(dump)
-        note_change(session.path)
-        print_line(f"Imported {dump} into the memory {session.path}.")
+
+
+def _print_imported(
+    dump: Path, memory: Path, content: str, as_json: bool, fluents: int | None = None, learn_again: Sequence[str] = ()
+) -> None:
+    """Print what was imported, with the categories to be learned again."""
+    note_change(memory)
+    if as_json:
+        print_json({"content": content, "memory": str(memory), "fluents": fluents, "learn_again": list(learn_again)})
+        return
+    print_line(f"Imported {'' if fluents is None else f'{fluents} fluents of '}{dump} into the memory {memory}.")
+    if learn_again:
+        print_line(f"These categories must be learned again from their views: {', '.join(learn_again)}.")
 
 
 @memory_app.command("stats")
@@ -219,11 +226,16 @@ def forget(
         ),
     ],
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Forget a lesson and everything that follows from it alone; 'category forget' forgets views."""
     from deixis.session import Session
 
     with Session(memory) as session:
         session.forget(lesson)
-    note_change(session.path)
-    print_line(f"Forgotten: {lesson}.")
+        note_change(session.path)
+        left = list(session.memory().lessons()) if as_json else []
+    if as_json:
+        print_json({"forgotten": lesson, "lessons": left})
+    else:
+        print_line(f"Forgotten: {lesson}.")

@@ -67,6 +67,7 @@ def learn(
         typer.Option("--experience", metavar="NAME", help="Experience that is an example; default: all that finished."),
     ] = None,
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Learn an activity from examples, and add it to a file of activities."""
     from deixis.workflows.reasoning.activities import learn as run
@@ -77,6 +78,10 @@ def learn(
     else:
         with _episodes(memory) as board:
             activity = run(name, sequences_of_experiences(board, experiences or ()), known)
+    if as_json:
+        names = [str(step) for step in activity.steps]
+        print_json({"activity": name, "examples": activity.examples, "steps": names, "known": str(known)})
+        return
     steps = count(len(activity.steps), "step")
     print_line(f"Learned '{name}' from {count(activity.examples, 'example')}: {steps}; in {known}")
 
