@@ -9,6 +9,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from deixis.reasoning.kernel import load_compiled
+
 
 def data_folder(name: str) -> Path | None:
     """Return a folder of the measuring data; print a note and return None if DEIXIS_DATA does not lead to it."""
@@ -21,7 +23,11 @@ def data_folder(name: str) -> Path | None:
 
 
 def medians(*jobs: Callable[[], object], runs: int = 7) -> list[float]:
-    """Return the median seconds of each job, run in turn so that a slow moment of the machine affects them all."""
+    """Return the median seconds of each job, run in turn so that a slow moment of the machine affects them all.
+
+    Kernels run compiled: a process that runs them only shortly interprets them, which ``bench_startup.py`` measures.
+    """
+    load_compiled()
     times: list[list[float]] = [[] for _ in jobs]
     for job in jobs:
         job()
