@@ -135,7 +135,7 @@ right: right, rightward, rightwards, far right, farthest right, furthest right, 
 between: in between
 around: all around, around
 opposite: opposite, across
-upside_down: upside down, face down, bottom up, face-down, upside-down
+upside_down: upside down, face down, mouth down, bottom up, face-down, mouth-down, upside-down
 near_each_other: side by side, next to each other, next to one another, beside each other, together, close together
 near_each_other: near each other, adjacent to each other, beside one another
 nested: inside one another, nested in one another, one inside the other, inside each other, nested in each other

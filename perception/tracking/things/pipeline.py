@@ -411,6 +411,8 @@ class Pipeline:
     def extend(self, points: NDArray[np.float64], colours: NDArray[np.float32], settings: OutlineSettings) -> None:
         """Add points that belong to the thing, and extend its box and move its origin where they lie outside.
 
+        The box of an upright round thing keeps its hidden back, such as that of a mug whose handle comes into view.
+
         Parameters
         ----------
         points
@@ -421,21 +423,30 @@ class Pipeline:
             Share of outermost points that are noise.
         """
         from deixis.perception.detection.outline import oriented_box, upright_box
+        from deixis.perception.tracking.things.revolution import circle_around
 
         if (~self.contains(points, 0.0)).sum() < MIN_POINTS_BEYOND:
             return
         turn = self.pose[:3, :3]
         own = self.cloud.points.astype(np.float64) @ turn.T + self.pose[:3, 3]
         everything = np.concatenate([own, points])
-        box = upright_box(everything, settings)
-        around = oriented_box(everything, settings)
+        circle = circle_around(everything) or circle_around(own)
+        box = upright_box(everything, settings, circle)
+        around = oriented_box(everything, settings, circle)
         middle = box.mean(axis=0)
         yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
         shades = np.zeros((len(own), 3), np.uint8) if self.cloud.colours is None else self.cloud.colours
         both = np.concatenate([shades, np.clip(colours, 0, 255).astype(np.uint8)])
         local = (everything - middle) @ turn
         self.cloud = PointCloud(local.astype(np.float32), None if self.cloud.colours is None else both)
-        self.half = (box[1] - box[0]) / 2 if yaw == 0 else np.ptp(local, axis=0) / 2
+        self.half = (box[1] - box[0]) / 2
+        if yaw != 0:
+            ends = np.stack([local.min(axis=0), local.max(axis=0)])
+            if circle is not None:
+                axis = (np.append(circle.centre, middle[2]) - middle) @ turn
+                ends[0, :2] = np.minimum(ends[0, :2], axis[:2] - circle.radius)
+                ends[1, :2] = np.maximum(ends[1, :2], axis[:2] + circle.radius)
+            self.half = np.ptp(ends, axis=0) / 2
         self.oriented = OrientedBox(
             tuple(((np.array(around.centre) - middle) @ turn).tolist()), around.yaw - yaw, around.extents
         )
