@@ -29,6 +29,7 @@ from deixis.reasoning.grounding.matching.problem import (
     to_labels,
 )
 from deixis.reasoning.grounding.matching.search.belief_propagation import belief_seconds
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import is_large
 from deixis.reasoning.grounding.matching.search.scalable import search_from
 
 Marginals = NDArray[np.float64]
@@ -80,6 +81,9 @@ class Posterior:
         Logarithm of the sum of the exponentials of all maps' values; nan where it is unknown.
     placed
         Whether absence needs no discount for coincidences, because absent objects had places.
+    absent_counted
+        Whether the number of absent objects was estimated by their places in a large scene, so that coincidences do not
+        estimate it again.
     """
 
     marginals: Marginals
@@ -89,6 +93,7 @@ class Posterior:
     is_propagated: bool = False
     log_total: float = math.nan
     placed: bool = False
+    absent_counted: bool = False
 
     def __post_init__(self) -> None:
         if self.errors.ndim == 0:
@@ -166,7 +171,15 @@ def posterior(
     marginals, errors, starts = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
     error = float(errors.max(initial=0.0))
     placed = places is not None and (n1 <= MAX_SETTLED_OBJECTS or starts > 1)
-    return Posterior(marginals, False, error, errors, is_propagated=not math.isfinite(error), placed=placed)
+    return Posterior(
+        marginals,
+        False,
+        error,
+        errors,
+        is_propagated=not math.isfinite(error),
+        placed=placed,
+        absent_counted=places is not None and is_large(problem.compiled),
+    )
 
 
 def exact_posterior(
