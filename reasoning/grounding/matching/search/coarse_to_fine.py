@@ -51,8 +51,8 @@ ABSENT_SHARES, ROUNDS_PER_PLACING = (0.25, 0.12, 0.06, 0.03, 0.0), 3
 """Minimum number of absent objects, as a share of the matches that are believed (the sum of the probabilities of each
 object's likeliest thing), each time that absent objects get places at the last level; and rounds between these times.
 The number is estimated from above: where absence is improbable at first, each absent object gets a wrong thing, which
-then confirms that few are absent. Where few matches are believed, there is little to confirm it, and the evidence hardly
-changes any estimate of the number: one that begins high would stay high."""
+then confirms that few are absent. Where few matches are believed, there is little to confirm it, and the evidence
+hardly changes any estimate of the number: one that begins high would stay high."""
 
 NEGLIGIBLE, UNCHANGED = 1e-3, -11.5
 """Share of the likeliest candidate below which a candidate does not count in a message; and log belief, relative to the
