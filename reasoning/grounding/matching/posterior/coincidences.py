@@ -19,8 +19,8 @@ where u is the evidence of the match without facts: a thing that is there by coi
 label as well. The share a of absent objects is estimated from the same scene (empirical Bayes, Robbins 1956): it is the
 mean probability of absence, with ``PRIOR_OBJECTS`` more objects of which ``PRIOR_ABSENT`` are absent. So a scene that
 has all described objects loses almost no decided matches. Where the places of absent objects in a large scene estimated
-that share, it is not estimated again from the discounted probabilities. ``benchmarks/fit_coincidences.py`` fits the four
-numbers.
+that share, it is not estimated again from the discounted probabilities. ``benchmarks/fit_coincidences.py`` fits the
+four numbers.
 """
 
 from __future__ import annotations
