@@ -172,7 +172,8 @@ def _answer(
 ) -> Alignment:
     """Return the likeliest map of the likeliest side, its posterior, and the paper's similarity for comparison.
 
-    The posterior is left out where the time did not suffice.
+    In a large scene, the map by the marginals replaces one that was searched, if it is likelier with the places of
+    absent objects. The posterior is left out where the time did not suffice.
     """
     if evidence.whole is not None:  # things that are not on the shortlist were not searched, so nothing is proved
         gap = math.inf
@@ -197,6 +198,10 @@ def _answer(
         if engine.sides is STATED_SIDES and best is not found.sides[0]:
             side = side_text(best.side.angle, best.side.mirrored)
             notes += (OTHER_SIDE_NOTE.format(side, best.probability / found.fits),)
+    elif found.posterior.likeliest is not None and gap > 0:
+        likeliest, problem = found.posterior.likeliest, evidence.problem
+        gap += max(0.0, problem.value(assignment) - problem.value(likeliest))
+        assignment = likeliest
     notes += _posterior_notes(best.evidence, found.posterior)
     return Alignment(
         engine=name,

@@ -356,7 +356,10 @@ def _log_outside(evidence: Evidence) -> float:
 
 
 def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
-    """Return the mixture of posteriors with these shares; a share without a posterior gives no match a probability."""
+    """Return the mixture of posteriors with these shares; a share without a posterior gives no match a probability.
+
+    Its likeliest map is that of the largest share.
+    """
     parts = [(share, one) for share, one in parts if share > 0]
     return Posterior(
         np.sum([share * one.marginals for share, one in parts], axis=0),
@@ -364,6 +367,7 @@ def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
         sum(share * one.error for share, one in parts),
         np.sum([share * one.errors for share, one in parts], axis=0),
         any(one.is_propagated for _, one in parts),
+        likeliest=max(parts, key=lambda part: part[0])[1].likeliest,
     )
 
 

@@ -18,7 +18,9 @@ The odds that the object is absent and p an undescribed thing, against the objec
 where u is the evidence of the match without facts: a thing that is there by coincidence seldom has the object's kind or
 label as well. The share a of absent objects is estimated from the same scene (empirical Bayes, Robbins 1956): it is the
 mean probability of absence, with ``PRIOR_OBJECTS`` more objects of which ``PRIOR_ABSENT`` are absent. So a scene that
-has all described objects loses almost no decided matches. ``benchmarks/fit_coincidences.py`` fits the four numbers.
+has all described objects loses almost no decided matches. Where the places of absent objects in a large scene estimated
+that share, it is not estimated again from the discounted probabilities. ``benchmarks/fit_coincidences.py`` fits the
+four numbers.
 """
 
 from __future__ import annotations
@@ -89,13 +91,15 @@ class Coincidences:
     unary: Array
     possible: NDArray[np.bool_]
 
-    def remaining(self, weights: CoincidenceWeights = SHIPPED_WEIGHTS) -> Array:
+    def remaining(self, weights: CoincidenceWeights = SHIPPED_WEIGHTS, iterations: int = ITERATIONS) -> Array:
         """Return the factor of each object's probabilities of being any thing.
 
         Parameters
         ----------
         weights
             Weights of the misfit and of the alternatives; by default, the shipped ones.
+        iterations
+            Maximum number of estimates of the share of absent objects; 1 keeps the mean probability of absence.
 
         Returns
         -------
@@ -108,7 +112,7 @@ class Coincidences:
         n1 = len(odds)
         absent = self.absent.sum() + PRIOR_ABSENT * n1
         remaining = np.ones(n1)
-        for _ in range(ITERATIONS):
+        for _ in range(iterations):
             share = (absent + PRIOR_ABSENT * PRIOR_OBJECTS) / (n1 + PRIOR_OBJECTS)
             remaining = 1.0 / (1.0 + share * odds)
             before, absent = absent, (1.0 - (1.0 - self.absent) * remaining).sum()
@@ -188,7 +192,9 @@ def discounted(problem: Problem, found: Posterior) -> Posterior:
     """
     if found.placed or not problem.unary.size or not len(problem.ends):
         return found
-    remaining = coincidences(problem, found.marginals).remaining()
+    # In a large scene with few facts, each estimate of the share from the discounted probabilities would be larger.
+    iterations = 1 if found.absent_counted else ITERATIONS
+    remaining = coincidences(problem, found.marginals).remaining(iterations=iterations)
     marginals = found.marginals * remaining[:, None]
     marginals[:, -1] += 1.0 - remaining
     return replace(found, marginals=marginals)

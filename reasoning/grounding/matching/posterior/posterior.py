@@ -19,6 +19,7 @@ from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.posterior.enumeration import add_up, factors
 from deixis.reasoning.grounding.matching.posterior.exchangeable import averaged, exchangeable
 from deixis.reasoning.grounding.matching.posterior.ladders import sampled_marginals
+from deixis.reasoning.grounding.matching.posterior.sampling import map_value
 from deixis.reasoning.grounding.matching.posterior.starts import starts_of
 from deixis.reasoning.grounding.matching.problem import (
     MAX_PLACES,
@@ -28,7 +29,8 @@ from deixis.reasoning.grounding.matching.problem import (
     to_assignment,
     to_labels,
 )
-from deixis.reasoning.grounding.matching.search.belief_propagation import belief_seconds
+from deixis.reasoning.grounding.matching.search.belief_propagation import belief_seconds, likeliest_map
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import is_large
 from deixis.reasoning.grounding.matching.search.scalable import search_from
 
 Marginals = NDArray[np.float64]
@@ -80,6 +82,13 @@ class Posterior:
         Logarithm of the sum of the exponentials of all maps' values; nan where it is unknown.
     placed
         Whether absence needs no discount for coincidences, because absent objects had places.
+    absent_counted
+        Whether the number of absent objects was estimated by their places in a large scene, so that coincidences do not
+        estimate it again.
+    likeliest
+        In a sampled large scene, the most valuable known map by the model with the places of absent objects: the map
+        from which the search for the posterior started, or that with the largest product of marginals; shape (n1,),
+        with ``UNMATCHED`` for absent objects. None elsewhere.
     """
 
     marginals: Marginals
@@ -89,6 +98,8 @@ class Posterior:
     is_propagated: bool = False
     log_total: float = math.nan
     placed: bool = False
+    absent_counted: bool = False
+    likeliest: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
         if self.errors.ndim == 0:
@@ -163,10 +174,22 @@ def posterior(
     if problem.places is not None and len(problem.ends) and n2 >= MIN_PLACED_THINGS:
         most = min(PLACES_SHARE * deadline.left / (SECONDS_PER_PLACE * len(problem.tables) * n2), MAX_PLACES)
         places = problem.places(most=int(most)) if most >= MIN_PLACES else None
-    marginals, errors, starts = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
-    error = float(errors.max(initial=0.0))
-    placed = places is not None and (n1 <= MAX_SETTLED_OBJECTS or starts > 1)
-    return Posterior(marginals, False, error, errors, is_propagated=not math.isfinite(error), placed=placed)
+    found = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
+    error, likeliest = float(found.errors.max(initial=0.0)), None
+    if is_large(problem.compiled):
+        maps = [likeliest_map(found.marginals.astype(np.float32), problem.compiled)]
+        maps += [] if start is None else [to_labels(start, n2)]
+        likeliest = to_assignment(max(maps, key=lambda labels: map_value(labels, found.problem)), n2)
+    return Posterior(
+        found.marginals,
+        False,
+        error,
+        found.errors,
+        is_propagated=not math.isfinite(error),
+        placed=places is not None and (n1 <= MAX_SETTLED_OBJECTS or found.starts > 1),
+        absent_counted=places is not None and is_large(problem.compiled),
+        likeliest=likeliest,
+    )
 
 
 def exact_posterior(

@@ -48,9 +48,11 @@ FIRST_POWER = 0.6
 """Power of the evidence at the first level; it grows to 1 at the last level."""
 
 ABSENT_SHARES, ROUNDS_PER_PLACING = (0.25, 0.12, 0.06, 0.03, 0.0), 3
-"""Minimum share of absent objects each time that they get places at the last level, and rounds between these times. The
-share is estimated from above: where absence is improbable at first, each absent object gets a wrong thing, which then
-confirms that few are absent."""
+"""Minimum number of absent objects, as a share of the matches that are believed (the sum of the probabilities of each
+object's likeliest thing), each time that absent objects get places at the last level; and rounds between these times.
+The number is estimated from above: where absence is improbable at first, each absent object gets a wrong thing, which
+then confirms that few are absent. Where few matches are believed, there is little to confirm it, and the evidence
+hardly changes any estimate of the number: one that begins high would stay high."""
 
 NEGLIGIBLE, UNCHANGED = 1e-3, -11.5
 """Share of the likeliest candidate below which a candidate does not count in a message; and log belief, relative to the
@@ -198,13 +200,13 @@ class CoarseToFine:
             As of :meth:`beliefs`.
         """
         n1, n2 = len(self.problem.unary), self.problem.unary.shape[1] - 1
-        order = _order_of_things(self.problem, 0)
+        order = np.arange(n2)  # single things need no division
         cells = _Cells(order, np.arange(n2 + 1))
         kept = min(2 * KEPT_CELLS, n2)
-        chosen = np.sort(np.argpartition(-beliefs[:, order], kept - 1)[:, :kept])
+        chosen = np.sort(np.argpartition(-beliefs[:, :-1], kept - 1)[:, :kept])
         candidates = _candidates(self._evidence(order), self.problem.unary[:, -1], cells, chosen, 1.0)
         weights = _weights(self._likelihoods(order), cells, 1.0)
-        first = np.log(np.column_stack([np.take_along_axis(beliefs[:, order], chosen, axis=1), beliefs[:, -1]]) + 1e-6)
+        first = np.log(np.column_stack([np.take_along_axis(beliefs, chosen, axis=1), beliefs[:, -1]]) + 1e-6)
         facts = np.zeros((len(self.slots.kind), kept + 1), np.float32)
         demand = np.zeros((n1, kept + 1), np.float32)
         share, _, problem = self._rounds(
@@ -230,7 +232,7 @@ class CoarseToFine:
         The messages of demand (n1, K) are changed in place, those of facts (2m, K) are returned. The first beliefs are
         those of the messages unless they are given (n1, K). The last result is the problem with places.
         """
-        problem, slots, n1 = self.problem, self.slots, len(self.problem.unary)
+        problem, slots = self.problem, self.slots
         largest = self.largest[slots.kind % len(self.largest)][:, None]
         absent = np.repeat(np.exp(-np.float32(power) * largest), candidates.cells.shape[1], axis=1)
         things = np.append(cells.order, problem.unary.shape[1] - 1)
@@ -250,7 +252,8 @@ class CoarseToFine:
                 if places is not None and placings < len(ABSENT_SHARES) and done % ROUNDS_PER_PLACING == 0:
                     seen = things[candidates.cells]
                     fits = self._fits_of_places(seen, _cavities(belief, facts, slots))
-                    expected = max(float(share[:, -1].sum()), ABSENT_SHARES[placings] * n1)
+                    believed = float(share[:, :-1].max(axis=1).sum())
+                    expected = max(float(share[:, -1].sum()), ABSENT_SHARES[placings] * believed)
                     problem = placed_at(self.problem, places, fits, expected)
                     candidates.unary[:, -1] = problem.unary[:, -1]
                     absent = np.exp(np.take_along_axis(problem.away, seen[slots.other], axis=1) - largest)

@@ -98,3 +98,11 @@ def test_absent_neighbours_make_coincidences_more_probable() -> None:
     there = discounted(problem, found).marginals[0, 0]
     assert discounted(problem, replace(found, marginals=marginals)).marginals[0, 0] < there
     assert coincidences(problem, marginals).remaining(SHIPPED_WEIGHTS)[0] < 1.0 - PRIOR_ABSENT / 10
+
+
+def test_a_counted_number_of_absent_objects_stays() -> None:
+    problem, found = row(misfit=3.0, n=40)
+    flat = replace(found, marginals=np.hstack([np.full((40, 40), 0.999 / 40), np.full((40, 1), 0.001)]))
+    again = discounted(problem, flat).marginals[:, -1].mean()
+    once = discounted(problem, replace(flat, absent_counted=True)).marginals[:, -1].mean()
+    assert 0.001 < once < again

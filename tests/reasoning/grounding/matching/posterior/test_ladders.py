@@ -38,7 +38,7 @@ def test_marginals_of_a_larger_problem_are_the_exact_ones() -> None:
     problem = no_unary_evidence(table.description(), table.scene()).problem
     exact = exact_posterior(problem)
     assert exact is not None
-    marginals, errors, _ = sampled_marginals(problem.compiled, exchangeable(problem), NEVER, 0)
+    marginals, errors, *_ = sampled_marginals(problem.compiled, exchangeable(problem), NEVER, 0)
     off = np.abs(marginals - exact.marginals).max(axis=1)
     assert off.max() < 0.03
     assert (off <= 6 * errors + exact.error).all()
@@ -53,14 +53,14 @@ def test_ladders_in_threads_give_the_same_every_time() -> None:
 def test_ladders_that_cannot_mix_disagree_and_nothing_is_decided(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "PROPOSALS", 4e4)
     problem = two_orders(24, 40.0)
-    marginals, errors, _ = sampled_marginals(problem.compiled, (), NEVER, 1)
+    marginals, errors, *_ = sampled_marginals(problem.compiled, (), NEVER, 1)
     assert errors.min() > 0.05
     assert not is_decided(marginals.max(axis=1), errors).any()
 
 
 def test_past_the_deadline_errors_are_infinite() -> None:
     problem = drawn(30, 2.0)
-    marginals, errors, _ = sampled_marginals(problem.compiled, (), Deadline.after(-1.0), 0)
+    marginals, errors, *_ = sampled_marginals(problem.compiled, (), Deadline.after(-1.0), 0)
     assert np.isinf(errors).all()
     np.testing.assert_allclose(marginals.sum(axis=1), 1.0, atol=1e-5)
     assert log_evidence(problem, Deadline.after(-1.0))[1] == math.inf

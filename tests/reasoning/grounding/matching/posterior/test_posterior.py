@@ -17,6 +17,7 @@ from deixis.reasoning.grounding.matching.posterior import posterior as module
 from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
 from deixis.reasoning.grounding.matching.posterior.posterior import log_sum_bound, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, MatchingError, Problem
+from deixis.reasoning.grounding.matching.search import coarse_to_fine
 from deixis.reasoning.grounding.options import is_decided
 
 NONE = np.zeros((0, 2), np.int64)
@@ -124,6 +125,18 @@ def test_the_same_seed_gives_the_same_marginals() -> None:
     one, two = posterior(problem, seed=4), posterior(problem, seed=4)
     assert not one.exact
     assert one.marginals.tolist() == two.marginals.tolist()
+
+
+def test_only_large_scenes_have_a_likeliest_map(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem, start = large(20), np.full(20, UNMATCHED)
+    assert posterior(problem, Deadline.after(0.2), start=start).likeliest is None
+    monkeypatch.setattr(coarse_to_fine, "MIN_COARSE_THINGS", 0)
+    found = posterior(problem, Deadline.after(0.2), start=start).likeliest
+    assert found is not None
+    assert problem.value(found) > problem.value(start)
+    again = posterior(problem, Deadline.after(0.2), start=found).likeliest
+    assert again is not None
+    assert problem.value(again) >= problem.value(found) - 1e-3
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.3])

@@ -55,6 +55,15 @@ def test_absent_objects_get_places_and_the_others_do_not_vanish() -> None:
     assert 0.5 < found[:, -1].sum() < 15
 
 
+def test_few_facts_do_not_keep_the_first_estimate_of_absence() -> None:
+    drawn = generate(60, 2.0, seed=4)
+    problem = no_unary_evidence(drawn.description(), drawn.scene()).problem
+    assert problem.places is not None
+    found, _ = CoarseToFine(problem.compiled, problem.places()).beliefs()
+    assert found.max(axis=1).mean() < 0.5
+    assert found[:, -1].sum() < 0.5
+
+
 def test_refining_keeps_beliefs_that_are_a_fixed_point() -> None:
     problem = chain(5, 40)
     exact = of_chain(problem)
