@@ -304,17 +304,13 @@ def machine_class() -> str:
 def is_busy() -> bool:
     """Return whether other programs load the machine so that times mean little.
 
-    Linux tells how many programs run at this moment; elsewhere the load of the last minute decides, which includes a
-    benchmark that has just ended.
+    The programs that run now count: the load average of the last minute includes a benchmark that has just ended.
     """
-    running = os.getloadavg()[0]
-    if RUNNING.exists():
-        samples = []
-        for _ in range(20):
-            time.sleep(0.1)
-            samples.append(int(RUNNING.read_text(encoding="ascii").split()[3].split("/")[0]) - 1)
-        running = statistics.fmean(samples)
-    return running > BUSY * len(os.sched_getaffinity(0))
+    samples = []
+    for _ in range(20):
+        time.sleep(0.1)
+        samples.append(int(RUNNING.read_text(encoding="ascii").split()[3].split("/")[0]) - 1)
+    return statistics.fmean(samples) > BUSY * len(os.sched_getaffinity(0))
 
 
 def measured_commit() -> str:

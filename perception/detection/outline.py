@@ -122,6 +122,24 @@ class Circle:
     centre: NDArray[np.float64]  # (2,)
     radius: float
 
+    def enclosed_by(self, corners: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the corners (2, 3) of a box, moved apart in plan where the circle reaches beyond them.
+
+        Parameters
+        ----------
+        corners
+            Lower and upper corner, shape (2, 3), in metres.
+
+        Returns
+        -------
+        ndarray
+            Corners of shape (2, 3) of the smallest box that holds the box and the circle.
+        """
+        larger = corners.copy()
+        larger[0, :2] = np.minimum(corners[0, :2], self.centre - self.radius)
+        larger[1, :2] = np.maximum(corners[1, :2], self.centre + self.radius)
+        return larger
+
     def off(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distances (n,) of places (n, 2) from the circle, relative to its radius; negative inside.
 
@@ -262,8 +280,7 @@ def upright_box(
     ordered = np.sort(points, axis=0)
     box = np.stack([ordered[skip], ordered[len(points) - 1 - skip]])
     if rim is not None:
-        box[0, :2] = np.minimum(box[0, :2], rim.centre - rim.radius)
-        box[1, :2] = np.maximum(box[1, :2], rim.centre + rim.radius)
+        box = rim.enclosed_by(box)
     box[:, 2] = np.maximum(box[:, 2], 0.0)
     return box
 

@@ -75,9 +75,7 @@ def model_of(
     around = OrientedBox(tuple(centre.tolist()), box.yaw + turn, box.extents)
     circle = circle_around(own)
     if circle is not None:  # its back is hidden
-        corners = np.stack([middle - half, middle + half])
-        corners[0, :2] = np.minimum(corners[0, :2], circle.centre - circle.radius)
-        corners[1, :2] = np.maximum(corners[1, :2], circle.centre + circle.radius)
+        corners = circle.enclosed_by(np.stack([middle - half, middle + half]))
         middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
         around = oriented_box(own, outlines, circle)
     pose = np.eye(4)

@@ -422,7 +422,7 @@ class Pipeline:
         settings
             Share of outermost points that are noise.
         """
-        from deixis.perception.detection.outline import oriented_box, upright_box
+        from deixis.perception.detection.outline import Circle, oriented_box, upright_box
         from deixis.perception.tracking.things.revolution import circle_around
 
         if (~self.contains(points, 0.0)).sum() < MIN_POINTS_BEYOND:
@@ -439,14 +439,11 @@ class Pipeline:
         both = np.concatenate([shades, np.clip(colours, 0, 255).astype(np.uint8)])
         local = (everything - middle) @ turn
         self.cloud = PointCloud(local.astype(np.float32), None if self.cloud.colours is None else both)
-        self.half = (box[1] - box[0]) / 2
-        if yaw != 0:
-            ends = np.stack([local.min(axis=0), local.max(axis=0)])
+        if yaw != 0:  # the sides of the box lie along the thing's own axes
+            box = np.stack([local.min(axis=0), local.max(axis=0)])
             if circle is not None:
-                axis = (np.append(circle.centre, middle[2]) - middle) @ turn
-                ends[0, :2] = np.minimum(ends[0, :2], axis[:2] - circle.radius)
-                ends[1, :2] = np.maximum(ends[1, :2], axis[:2] + circle.radius)
-            self.half = np.ptp(ends, axis=0) / 2
+                box = Circle(circle.centre - middle[:2], circle.radius).turned(turn[:2, :2].T).enclosed_by(box)
+        self.half = (box[1] - box[0]) / 2
         self.oriented = OrientedBox(
             tuple(((np.array(around.centre) - middle) @ turn).tolist()), around.yaw - yaw, around.extents
         )

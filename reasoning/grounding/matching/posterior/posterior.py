@@ -175,8 +175,8 @@ def posterior(
         most = min(PLACES_SHARE * deadline.left / (SECONDS_PER_PLACE * len(problem.tables) * n2), MAX_PLACES)
         places = problem.places(most=int(most)) if most >= MIN_PLACES else None
     found = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
-    error, likeliest = float(found.errors.max(initial=0.0)), None
-    if is_large(problem.compiled):
+    error, likeliest, large = float(found.errors.max(initial=0.0)), None, is_large(problem.compiled)
+    if large:
         maps = [likeliest_map(found.marginals.astype(np.float32), problem.compiled)]
         maps += [] if start is None else [to_labels(start, n2)]
         likeliest = to_assignment(max(maps, key=lambda labels: map_value(labels, found.problem)), n2)
@@ -187,7 +187,7 @@ def posterior(
         found.errors,
         is_propagated=not math.isfinite(error),
         placed=places is not None and (n1 <= MAX_SETTLED_OBJECTS or found.starts > 1),
-        absent_counted=places is not None and is_large(problem.compiled),
+        absent_counted=places is not None and large,
         likeliest=likeliest,
     )
 

@@ -58,11 +58,8 @@ def rename(
     name = new_category_name(new)
     with Session(memory) as session:
         session.rename_category(old, name)
-        note_change(session.path)
-        if as_json:
-            _print_change(session, category_name(old), name)
-            return
-    print_line(f"'{category_name(old)}' is now '{name}'.")
+        before = category_name(old)
+        _print_change(session, before, name, f"'{before}' is now '{name}'.", as_json)
 
 
 @category_app.command("merge")
@@ -83,11 +80,8 @@ def merge(
 
     with Session(memory) as session:
         session.merge_categories(source, into)
-        note_change(session.path)
-        if as_json:
-            _print_change(session, category_name(source), category_name(into))
-            return
-    print_line(f"The views of '{category_name(source)}' now belong to '{category_name(into)}'.")
+        before, name = category_name(source), category_name(into)
+        _print_change(session, before, name, f"The views of '{before}' now belong to '{name}'.", as_json)
 
 
 @category_app.command("forget")
@@ -104,14 +98,15 @@ def forget_category(
 
     with Session(memory) as session:
         session.forget_category(name)
-        note_change(session.path)
-        if as_json:
-            _print_change(session, category_name(name), None)
-            return
-    print_line(f"Forgotten: {category_name(name)}.")
+        before = category_name(name)
+        _print_change(session, before, None, f"Forgotten: {before}.", as_json)
 
 
-def _print_change(session: Session, before: str, category: str | None) -> None:
-    """Print as JSON which category the views of ``before`` have now, None if they are forgotten."""
-    views = 0 if category is None else session.categories()[category]
-    print_json({"before": before, "category": category, "views": views})
+def _print_change(session: Session, before: str, category: str | None, text: str, as_json: bool) -> None:
+    """Print which category the views of ``before`` have now, None if they are forgotten: as JSON, or this text."""
+    note_change(session.path)
+    if as_json:
+        views = 0 if category is None else session.categories()[category]
+        print_json({"before": before, "category": category, "views": views})
+    else:
+        print_line(text)

@@ -234,8 +234,7 @@ def forget(
     with Session(memory) as session:
         session.forget(lesson)
         note_change(session.path)
-        left = list(session.memory().lessons()) if as_json else []
-    if as_json:
-        print_json({"forgotten": lesson, "lessons": left})
-    else:
-        print_line(f"Forgotten: {lesson}.")
+        if as_json:
+            print_json({"forgotten": lesson, "lessons": list(session.memory().lessons())})
+        else:
+            print_line(f"Forgotten: {lesson}.")
