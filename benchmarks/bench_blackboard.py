@@ -27,10 +27,6 @@ from typing import ClassVar
 import pyoxigraph as ox
 from records import command_line, count, figure, peer_version, ratio, recorded, seconds
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-from killing import forks_of
-
 from deixis.memory import folder as files
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add, Logged
@@ -42,6 +38,11 @@ from deixis.memory.semantic.store import SemanticMemory
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.modules import Board, Module, ModuleSpec
 from deixis.robot.runtime import Runtime
+
+# After deixis is imported: the folder of the tests has a package of this name too.
+sys.path.append(str(Path(__file__).parent.parent / "tests"))
+
+from killing import forks_of
 
 SEEN = Source(Origin.SEEN, "tracker", "frame 7")
 

@@ -20,14 +20,16 @@ import time
 from collections import Counter
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-
-from all_stores import TEA, Example, example_in, findings, state
-from killing import KilledAtSteps, forks_of, killed_at_steps
 from records import command_line, count, recorded
 
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.session import Session
+
+# After deixis is imported: the folder of the tests has a package of this name too.
+sys.path.append(str(Path(__file__).parent.parent / "tests"))
+
+from all_stores import TEA, Example, example_in, findings, state
+from killing import KilledAtSteps, forks_of, killed_at_steps
 
 
 class Writes:
