@@ -1,4 +1,4 @@
-"""Local search over maps: incremental gains, annealing, hill climbing, reassignment and recombination; compiled.
+"""Local search over maps: incremental gains, annealing, climbing, joint moves, reassignment, recombination; compiled.
 
 Most exchanges that a search evaluates are not made. With cached gains, evaluating an exchange takes a few numbers,
 whatever the number of facts; only making one costs a row of a table for each fact of the two objects.
@@ -148,6 +148,69 @@ def climb(labels, problem):  # type: ignore[no-untyped-def]
                 _exchange(i, chosen, labels, holder, out)
 
 
+MIN_GAIN = 1e-6  # minimum improvement of a map
+MAX_PAIRED_CELLS = 5_000_000  # pairs of things that :func:`move_pairs` tries, times the facts between the two objects
+
+
+@njit(cache=True, nogil=True)
+def move_pairs(labels, problem):  # type: ignore[no-untyped-def]
+    """Apply the best joint move of two objects that share facts, until none improves the map; return the total gain.
+
+    The two get things that no other object has, or none. Where facts hold only if both objects move, no single move
+    leads from one map to the better one, and annealing seldom does if the facts are many. The search ends where it
+    would try more than ``MAX_PAIRED_CELLS``.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), changed in place.
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    float
+        Total gain in nats, at least 0.
+    """
+    n1, width = problem.unary.shape
+    held, gain_i, gain_j = np.zeros(width, np.bool_), np.empty(width), np.empty(width)
+    held[labels] = True
+    total, cells, better = 0.0, 0, True
+    while better:
+        better = False
+        for i in range(n1):
+            others = problem.other[problem.first[i] : problem.first[i + 1]]
+            for j in np.unique(others[others > i]):
+                held[labels[i]] = held[labels[j]] = held[width - 1] = False
+                things = np.flatnonzero(~held)
+                between = problem.first[i] + np.flatnonzero(others == j)
+                cells += len(things) ** 2 * len(between)
+                if cells > MAX_PAIRED_CELLS:
+                    return total
+                gains_of(i, labels, problem, gain_i)
+                gains_of(j, labels, problem, gain_j)
+                old_i, old_j = labels[i], labels[j]
+                best = gain_i[old_i] + gain_j[old_j]
+                for slot in between:
+                    table = problem.tables[problem.kind[slot]]
+                    gain_i -= table[:, old_j]
+                    gain_j -= table[old_i]
+                    best -= table[old_i, old_j]
+                now = best
+                for p in things:
+                    for q in things:
+                        if (p != q or p == width - 1) and problem.allowed[i, p] and problem.allowed[j, q]:
+                            value = gain_i[p] + gain_j[q]
+                            for slot in between:
+                                value += problem.tables[problem.kind[slot], p, q]
+                            if value > best + MIN_GAIN:
+                                best, labels[i], labels[j] = value, p, q
+                held[labels[i]] = held[labels[j]] = True
+                if best > now:
+                    total, better = total + best - now, True
+    return total
+
+
 @njit(cache=True)
 def gains_of(i, labels, problem, gain):  # type: ignore[no-untyped-def]
     """Fill ``gain`` (n2 + 1,) with the value of object i as each thing, with the other objects unchanged.
@@ -274,9 +337,6 @@ def _draw(i, state, problem, temperature, noise, at, facts):  # type: ignore[no-
     for slot in range(problem.first[i], problem.first[i + 1]):
         facts[state.labels[problem.other[slot]]] = 0.0
     return chosen, gained
-
-
-MIN_GAIN = 1e-6  # minimum improvement of a map
 
 
 @njit(cache=True, nogil=True)

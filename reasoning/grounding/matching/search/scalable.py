@@ -26,6 +26,7 @@ from deixis.reasoning.grounding.matching.search.local_search import (
     climb,
     combine,
     keep,
+    move_pairs,
     reassign,
 )
 
@@ -181,6 +182,8 @@ def _annealed(
             return best, False
     climb(best, compiled)
     if reassign(best, compiled, PATIENCE, seed) > 0.0:
+        climb(best, compiled)
+    if move_pairs(best, compiled) > 0.0:
         climb(best, compiled)
     return best, True
 
