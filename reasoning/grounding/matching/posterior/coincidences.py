@@ -18,9 +18,9 @@ The odds that the object is absent and p an undescribed thing, against the objec
 where u is the evidence of the match without facts: a thing that is there by coincidence seldom has the object's kind or
 label as well. The share a of absent objects is estimated from the same scene (empirical Bayes, Robbins 1956): it is the
 mean probability of absence, with ``PRIOR_OBJECTS`` more objects of which ``PRIOR_ABSENT`` are absent. So a scene that
-has all described objects loses almost no decided matches. Where the places of absent objects in a large scene estimated
-that share, it is not estimated again from the discounted probabilities. ``benchmarks/fit_coincidences.py`` fits the
-four numbers.
+has all described objects loses almost no decided matches. Where absent objects had places in the model, their mean
+probability of absence is kept as that share; it is still too small for matches of absent objects to be left undiscounted.
+``benchmarks/fit_coincidences.py`` fits the four numbers.
 """
 
 from __future__ import annotations
@@ -179,8 +179,7 @@ def discounted(problem: Problem, found: Posterior) -> Posterior:
     Returns
     -------
     Posterior
-        Copy with new marginals; ``found`` itself where there are no facts, objects or things, or where absent objects
-        have places.
+        Copy with new marginals; ``found`` itself where there are no facts, objects or things.
 
     Examples
     --------
@@ -190,9 +189,9 @@ def discounted(problem: Problem, found: Posterior) -> Posterior:
     >>> discounted(problem, sure).marginals[:, 2].round(3).tolist()  # the probabilities of absence
     [0.01, 0.01]
     """
-    if found.placed or not problem.unary.size or not len(problem.ends):
+    if not problem.unary.size or not len(problem.ends):
         return found
-    # In a large scene with few facts, each estimate of the share from the discounted probabilities would be larger.
+    # With few facts, each estimate of the share from the discounted probabilities would be larger.
     iterations = 1 if found.absent_counted else ITERATIONS
     remaining = coincidences(problem, found.marginals).remaining(iterations=iterations)
     marginals = found.marginals * remaining[:, None]

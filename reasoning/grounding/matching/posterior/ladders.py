@@ -82,7 +82,6 @@ class Sampled(NamedTuple):
 
     marginals: Array  # (n1, n2 + 1): the last column is the probability of absence
     errors: Array  # (n1,): standard error of each object's marginals, infinite where no chains were compared
-    starts: int  # number of runs of belief propagation that ladders started from
     problem: Compiled  # with the places of absent objects
 
 
@@ -115,8 +114,8 @@ def sampled_marginals(
     Returns
     -------
     Sampled
-        Marginals, shape (n1, n2 + 1), the standard error of each object's, shape (n1,), the number of starts, and the
-        problem with the places of absent objects.
+        Marginals, shape (n1, n2 + 1), the standard error of each object's, shape (n1,), and the problem with the places
+        of absent objects.
     """
     n1 = len(problem.unary)
     steps = max(RUNGS_PER_ROOT * math.sqrt(n1), MIN_RUNGS)
@@ -133,7 +132,7 @@ def sampled_marginals(
         marginals, errors = _agreement(parts, beliefs)
         if number and errors.max() <= TOLERANCE:
             break
-    return Sampled(marginals, errors, len(run.starts.runs), run.problem)
+    return Sampled(marginals, errors, run.problem)
 
 
 def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> tuple[float, float]:

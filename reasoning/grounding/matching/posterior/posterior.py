@@ -48,11 +48,6 @@ SECONDS_PER_PLACE, PLACES_SHARE = 3.3e-7, 0.3
 all places may take. Where the time is short there are fewer places, and none where there would be fewer than the
 minimum number."""
 
-MAX_SETTLED_OBJECTS = 150
-"""Maximum number of objects whose absence the places alone decide if all chains start from one run of belief
-propagation: it may settle a part one place beside its own, so that matches are discounted for coincidences too. Several
-runs seldom settle the same part wrongly, and chains that start from them disagree on it."""
-
 START_EFFORT = 0.1  # effort of the search for a first map
 
 BOUND_CELLS, BOUND_WORK = 4e5, 1e6  # maximum cells of facts, and work per share, of a bound of the sum
@@ -80,11 +75,9 @@ class Posterior:
         Whether the marginals are from belief propagation alone, so that their error is unknown.
     log_total
         Logarithm of the sum of the exponentials of all maps' values; nan where it is unknown.
-    placed
-        Whether absence needs no discount for coincidences, because absent objects had places.
     absent_counted
-        Whether the number of absent objects was estimated by their places in a large scene, so that coincidences do not
-        estimate it again.
+        Whether the number of absent objects was estimated by their places, so that coincidences do not estimate it
+        again.
     likeliest
         In a sampled large scene, the most valuable known map by the model with the places of absent objects: the map
         from which the search for the posterior started, or that with the largest product of marginals; shape (n1,),
@@ -97,7 +90,6 @@ class Posterior:
     errors: NDArray[np.float64] = field(default_factory=lambda: np.array(math.nan))
     is_propagated: bool = False
     log_total: float = math.nan
-    placed: bool = False
     absent_counted: bool = False
     likeliest: NDArray[np.int64] | None = None
 
@@ -175,8 +167,8 @@ def posterior(
         most = min(PLACES_SHARE * deadline.left / (SECONDS_PER_PLACE * len(problem.tables) * n2), MAX_PLACES)
         places = problem.places(most=int(most)) if most >= MIN_PLACES else None
     found = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
-    error, likeliest, large = float(found.errors.max(initial=0.0)), None, is_large(problem.compiled)
-    if large:
+    error, likeliest = float(found.errors.max(initial=0.0)), None
+    if is_large(problem.compiled):
         maps = [likeliest_map(found.marginals.astype(np.float32), problem.compiled)]
         maps += [] if start is None else [to_labels(start, n2)]
         likeliest = to_assignment(max(maps, key=lambda labels: map_value(labels, found.problem)), n2)
@@ -186,8 +178,7 @@ def posterior(
         error,
         found.errors,
         is_propagated=not math.isfinite(error),
-        placed=places is not None and (n1 <= MAX_SETTLED_OBJECTS or found.starts > 1),
-        absent_counted=places is not None and large,
+        absent_counted=places is not None,
         likeliest=likeliest,
     )
 
