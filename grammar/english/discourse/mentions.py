@@ -43,7 +43,7 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
     own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
     stuff = noun in SUBSTANCES and phrase.determiner is None and phrase.owner is None  # 'in water behind the counter'
-    return (around and (bare or (wide and beside))) or flat or amid or own or stuff
+    return (around and bare) or (wide and (bare or beside)) or flat or amid or own or stuff
 
 
 COMPARTMENTS = frozenset(

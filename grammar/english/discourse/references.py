@@ -62,6 +62,8 @@ OPPOSITES = {
     "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
     "on": "under", "under": "on", "top": "bottom", "bottom": "top",
 }  # fmt: skip
+CORNERS = frozenset({"top_left", "top_right", "bottom_left", "bottom_right"})
+"""Relations that name a corner of a thing or of the surface, where no other thing is named."""
 POLES = {
     **dict.fromkeys(("large", "big", "tall", "long", "wide", "thick", "high", "deep", "heavy", "broad"), 1),
     **dict.fromkeys(("small", "little", "short", "narrow", "thin", "low", "shallow", "light", "tiny"), -1),

@@ -8,13 +8,16 @@ from dataclasses import replace
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.mentions import Mentions
-from deixis.grammar.english.discourse.references import OPPOSITES, Region
+from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, Predicate
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, last_word
 from deixis.ontology.graph.claims import COLLECTIVE
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
+
+AT_CORNER = re.compile(r"(?:at|in|on)\s+the\s+[\w-]+\s+(?:left|right)", re.IGNORECASE)
+"""Corner as a place, and not as a direction: *at the upper left*, not *to the upper left*."""
 
 MAX_WORDS_AFTER = 3
 """Number of words between a relative clause and the pronoun that stands for its last thing."""
@@ -344,7 +347,23 @@ class Relations(Mentions):
         else:
             self._pair(subject, "on", last, False)
 
+    def _in_corner(self, subject: Entity, predicate: Predicate) -> bool:
+        """Read *at the upper left* as a corner: of the thing of the corner before, or else of the surface."""
+        if predicate.relation not in CORNERS:
+            return False
+        last = next((d for d in reversed(self.drafts) if d.relation in CORNERS and subject not in d.subjects), None)
+        near = last is not None and self.how.sentence - last.how.sentence <= 1
+        if last is not None and near and Guess.OF_THE_LAST not in last.how.guesses:
+            self._add(predicate.relation, (subject,), last.arguments, value=last.value)
+            return True
+        if not AT_CORNER.match(self.text[slice(*predicate.span)]):
+            return False
+        self._add("part", (subject,), (), value=predicate.relation.replace("_", " "))
+        return True
+
     def _bare_direction(self, subject: Entity, predicate: Predicate) -> None:
+        if self._in_corner(subject, predicate):
+            return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         if (
             predicate.part is None

@@ -162,7 +162,7 @@ ABSTRACT = frozenset(
         "value",
         "age",
         *("layout", "setup", "description", "instruction", "method", "procedure", "purpose"),
-        *("blame", "pressure", "trust", "faith"),
+        *("blame", "pressure", "trust", "faith", "company", "care", "help", "thanks", "welcome"),
         *("trick", "advantage", "difficulty", "problem", "mistake", "effect", "mood", "atmosphere", "smell", "noise"),
         *("silence", "weather", "tradition", "custom", "history", "law", "risk", "danger", "chance", "news"),
     ]
