@@ -346,6 +346,9 @@ class NounFinder:
         before = self.norms[back] if at else ""
         after = self.norms[at + 1]
         form = self._verbs.get(norm)
+        relative = back < at - 1 and before in ("which", "who", "that") and form is not None and form.form in ("s", "base")
+        if relative and form is not None and form.kind in ("posture", "lean") and self._predicate_follows(at):
+            return False  # 'which now lies on it'
         if before == "please" and (form is None or form.form == "base") and norm.isalpha():
             return False
         after_determiner = (
@@ -466,6 +469,13 @@ class NounFinder:
             return False
         if form.form == "s" and before == "," and self.is_determiner(at + 1):
             return False
+        if form.form == "s" and before == "and" and not self._nouns.knows(norm) and not self._lists_plurals(back - 1):
+            if form.kind in ("other", "transitive") and (self.number(at + 1) is not None or self.is_determiner(at + 1)):
+                return False  # 'sets a boat on it and takes three crates'
+        handled = self._verbs.get(before)
+        if form.form == "s" and handled is not None and handled.kind == "transitive" and not after_determiner:
+            if handled.form == "base" and not self.is_determiner(at + 1) and self._nouns.singular(norm)[1]:
+                return not self._predicate_follows(at)  # 'the jars hold nails and screws'
         if (
             form.form == "s"
             and before in (",", "and")
@@ -787,6 +797,10 @@ class NounFinder:
         ):
             return self._nounish(at + 1) and norm in _ADJECTIVE_NOUNS
         return self.is_noun(at)
+
+    def _lists_plurals(self, at: int) -> bool:
+        """Return True for a bare plural before *and*, as in a list of things."""
+        return at > 0 and self._nouns.singular(self.norms[at])[1] and not self.is_determiner(at - 1)
 
     def _counted(self, at: int) -> bool:
         """Return True if a number above one stands before the nouns that begin here, or before their adjectives."""

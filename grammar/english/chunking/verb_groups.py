@@ -239,6 +239,8 @@ class VerbChunker(RelatorChunker):
             )
             if alone and i == at and norm.endswith("s") and len(norm) > 3 and norm.isalpha() and norm not in PRONOUNS:
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
+            if i == at and self._goes_on_with(at):
+                return Chunk("TVERB", at, i + 1, _with(group, norm, "unknown", "s"))
             if self._previous() == "NP" and i == at and self.nouns.ends_as_verb(at):
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
             return self._unknown_participle(at, i, group)
@@ -409,6 +411,15 @@ class VerbChunker(RelatorChunker):
         if self.nouns.is_noun(i) and self._previous() not in ("NP", "REL"):  # third person
             return None
         return self._finite(at, end, found)
+
+    def _goes_on_with(self, at: int) -> bool:
+        """Return True for an unknown verb after *and* with its object: *each sets a boat on it and takes a crate*."""
+        norm, last = self.norms[at], next((c for c in reversed(self.chunks) if c.type in FINITE | {"CUT"}), None)
+        if self._previous() != "AND" or last is None or last.type == "CUT" or last.value.form != "s":
+            return False
+        known = self.nouns.is_known_noun(norm) or self.nouns.is_determiner(at) or norm in PRONOUNS
+        known = known or not norm.endswith("s") or norm.endswith("ss") or not norm.isalpha()
+        return not known and (self.nouns.is_determiner(at + 1) or self.nouns.number(at + 1) is not None)
 
     def _tried(self, at: int, i: int, group: VerbGroup) -> Chunk | None:
         """Return the verb of a word that is tried as one: a command where a clause begins, and finite elsewhere."""

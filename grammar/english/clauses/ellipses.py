@@ -39,6 +39,64 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
     return chunks
 
 
+def with_pairs_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *A and B go in the first and the second drawer* as one clause for each thing and its place.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence in the order of the text.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks in which the verb is repeated for each pair, if the places are numbered or *respectively* follows.
+    """
+    for i, chunk in enumerate(chunks):
+        if type_at(chunks, i - 1) not in JOINT_TYPES | {"", "PUT"} or chunk.type != "NP":
+            continue
+        things, end = _listed(chunks, i)
+        placed = type_at(chunks, i - 1) == "PUT"
+        verb = end
+        while type_at(chunks, end) in FINITE | {"PART"}:
+            end += 1
+        if len(things) < 2 or type_at(chunks, end) != "PREP" or (placed is (end > verb)):
+            continue
+        places, after = _listed(chunks, end + 1)
+        rest = end_before(chunks, after, JOINT_TYPES - {"COMMA"})
+        told = [k for k in range(after, rest) if _is_respective(chunks[k])]
+        ordered = all(place.value.adjectives and place.value.adjectives[0].rank for place in places)
+        if len(places) != len(things) or not (told or ordered) or not places[-1].value.head:
+            continue
+        of = [c for c in chunks[after : told[0] if told else rest] if c.type != "COMMA"]
+        begin, found = (i - 1 if placed else i), list(chunks[: i - 1 if placed else i])
+        for thing, place in zip(things, places, strict=True):
+            value = place.value if place.value.head else replace(place.value, head=places[-1].value.head)
+            here = replace(place, value=replace(value, determiner=value.determiner or "the"))
+            found += [*chunks[begin : i], thing, *chunks[verb:end], chunks[end], here, *of, cut(place)]
+        return [*found, *with_pairs_apart(chunks[rest:])]
+    return chunks
+
+
+def _listed(chunks: list[Chunk], at: int) -> tuple[list[Chunk], int]:
+    """Return the noun phrases of a list with *and* before the last, and the place after it."""
+    found, joined, i = [], False, at
+    while type_at(chunks, i) == "NP":
+        found.append(chunks[i])
+        i += 1
+        if joined or type_at(chunks, i) not in ("COMMA", "AND"):
+            break
+        joined = "AND" in (type_at(chunks, i), type_at(chunks, i + 1))
+        i += 1 + (type_at(chunks, i + 1) == "AND" and type_at(chunks, i) == "COMMA")
+    return (found, i) if joined else ([], at)
+
+
+def _is_respective(chunk: Chunk) -> bool:
+    """Return True for *respectively* and *in that order*."""
+    adverb = chunk.type == "ADVERB" and chunk.value in ("in that order", "in this order", "in order")
+    return adverb or (chunk.type == "ADV" and chunk.value.preposition.phrase == "respectively")
+
+
 def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:
     """Return *there stands a clock in the corner* as *there is a clock in the corner*."""
     found = list(chunks)

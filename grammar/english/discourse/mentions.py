@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import replace
 
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import PAST_RELATIVE, UNSURE_RELATIVE
 from deixis.grammar.english.discourse.drafts import Drafting
 from deixis.grammar.english.discourse.entities import Entity, Role
@@ -188,6 +189,17 @@ class Mentions(Drafting, ABC):
         focus: bool = True,
         existential: bool = False,
     ) -> None:
+        held = [p for p in predicates if p.relation in ("with", "inside") and len(p.arguments) == 1]
+        if any(self.text[slice(*p.span)].casefold().startswith(("with", "in")) for p in held):
+            held = []  # what is with a thing, and not what it holds
+        shared = phrase is not None and phrase.determiner in ("both", "each", "every", "all")
+        if 1 < len(held) == entity.size and not shared:
+            if any(p.relation in ("row", "one_each") for p in predicates):
+                for leaf, predicate in zip(entity.leaves(), held, strict=True):
+                    self._say(leaf, (predicate,), phrase, focus=False)  # 'from left to right they hold A, B and C'
+                predicates = tuple(p for p in predicates if p not in held)
+            else:
+                self.how = self._guessed(Guess.CONTESTED)
         others: list[Entity] = []
         if focus:
             self.references.named = others

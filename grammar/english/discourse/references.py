@@ -16,6 +16,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PAIRED,
     PARTS,
     PEOPLE,
+    PLACES_OF,
     REMOVABLE,
     SINGLE_PLURALS,
     SURROUNDINGS,
@@ -208,6 +209,10 @@ class References:
             whole = self._earlier(replace(phrase, head=noun.rpartition(" ")[0], adjectives=(), determiner="the"))
             if whole is not None:
                 return Entity(last, Role.PART, whole=whole)  # 'the knife blade'
+        whose = phrase.owner or phrase.of
+        if whose is not None and noun in PLACES_OF and relation is None and last_word(whose.head) not in PEOPLE:
+            if whose.pronoun not in VIEWER_WORDS | {"we", "he", "she"}:
+                return self.find(whose, relation, besides)  # 'the home of the bucket is under the tap'
         if phrase.of is not None and last in GENERAL:
             counted = phrase.count is not None and phrase.of.count is None and phrase.of.determiner is None
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of

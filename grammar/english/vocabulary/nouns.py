@@ -211,6 +211,9 @@ VIEWER = "viewer"
 
 VIEWER_WORDS = frozenset({"me", "i", "you", "we", "us", "myself", "yourself"})
 
+PLACES_OF = frozenset({"home", "place", "spot", "position", "location"})
+"""Nouns of the place of a thing, of which a place is that of the thing: *the place of the jug is on the shelf*."""
+
 GENERAL = frozenset(
     ["thing", "object", "item", "stuff", "something", "anything", "everything", "piece", "element", "one"]
 )
