@@ -442,7 +442,7 @@ class NounFinder:
             return False  # 'Ann and Tom kneel beside it'
         accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
         if accompanied and form.form == "s" and self._nouns.singular(norm)[1]:
-            return True  # 'with the cotton rolls behind it'
+            return not (spatial and self._awaits_verb(at - 3))  # 'with the cotton rolls behind it'
         first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
             first > 1 and not self.is_determiner(at - 1) and form.form == "base"
@@ -798,6 +798,17 @@ class NounFinder:
             return self._nounish(at + 1) and norm in _ADJECTIVE_NOUNS
         return self.is_noun(at)
 
+    def _awaits_verb(self, at: int) -> bool:
+        """Return True if the clause has no verb before a place: *the envelope with the card stands between them*."""
+        while at > 0 and self.norms[at - 1] not in _CLAUSE_ENDS | {"and", "but"}:
+            at -= 1
+            form = self._verbs.get(self.norms[at])
+            if self.norms[at] in IS_FORMS or (form is not None and not self.is_noun(at)) or self.norms[at] in MODALS:
+                return False
+        rest = self.norms[at:]
+        end = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
+        return IS_FORMS.isdisjoint(rest[:end])
+
     def _lists_plurals(self, at: int) -> bool:
         """Return True for a bare plural before *and*, as in a list of things."""
         return at > 0 and self._nouns.singular(self.norms[at])[1] and not self.is_determiner(at - 1)
@@ -838,7 +849,7 @@ _LATIN_PLURALS = ("ae", "i", "a")
 _NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
 
 _PLURALS_LIKE_VERBS = word_set(
-    "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape tip point"
+    "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape tip point press"
 )
 """Verbs whose third person is more often the plural of a thing: *cups here, sandwiches there*."""
 

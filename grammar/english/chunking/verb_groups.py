@@ -50,7 +50,7 @@ class VerbChunker(RelatorChunker):
             if form is not None and spatial and last is not None and last.modal:
                 group = VerbGroup(form.lemma, form.kind, "base", last.modal, positive=False)
                 return self._finite(at, at + 2, group)  # 'it must hang on the rail and not lie on the table'
-        if self._previous() == "AND" and (shared := self._second_verb(at)) is not None:
+        if self._previous() in ("AND", "OR") and (shared := self._second_verb(at)) is not None:
             return shared
         i, adverbs, modal, positive, past = at, [], None, True, False
         begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}

@@ -44,6 +44,8 @@ UNCERTAIN = frozenset({"might", "may", "could", "would"})
 
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
 
+MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
+"""Properties that a part and its whole need not share."""
 BARE_AFTER_BE = re.compile(
     r"\b(?:is|are|was|were|be|been|remains?|perfectly|quite)\s+(?:all\s+)?$|['\u2019]s\s+$", re.IGNORECASE
 )
@@ -471,6 +473,8 @@ class Discourse(Statements):
             if predicate.relation in ("left", "right") and not predicate.arguments:
                 self._add("pointing", (last,), (), value=predicate.relation)
                 continue
+            if predicate.relation in MEASURES or predicate.relation in ("colour", "material", "shape"):
+                continue  # 'the cable is too short'
             if predicate.relation == "far":
                 predicate = replace(predicate, relation="pointing", arguments=(), value=None, part="away")
             if (predicate.relation == "pointing" and any("same" in self._words(a) for a in predicate.arguments)) or (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from dataclasses import replace
 
@@ -14,6 +15,9 @@ from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
 from deixis.ontology.graph.claims import PLACES
+
+ABSOLUTE = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
+"""Verb after a noun phrase, without which it tells how the thing before it is: *its flap opening away from you*."""
 
 SUPERLATIVES = {
     ("size", 1): "largest", ("size", -1): "smallest", ("height", 1): "tallest", ("height", -1): "shortest",
@@ -223,7 +227,11 @@ class Mentions(Drafting, ABC):
              if p.arguments and not (p.relation in ("in_front", "behind") and self._within(p.relation))), None
         )  # fmt: skip
         if focus:
-            self.references.recent.insert(0, Focus(entity, others, relation, self.how.sentence))
+            last = self.references.recent[0] if self.references.recent else None
+            own = phrase is not None and phrase.owner is not None and phrase.owner.pronoun == "it" and bool(phrase.head)
+            here = last is not None and last.sentence == self.how.sentence and last.subject is not entity
+            at = int(own and here and phrase is not None and ABSOLUTE.match(self.text[phrase.span[1] : self.end]) is None)
+            self.references.recent.insert(at, Focus(entity, others, relation, self.how.sentence))
         else:
             self.references.recent.append(Focus(entity, others, relation, self.how.sentence))
 

@@ -155,7 +155,7 @@ PUT_VERBS = word_set(
     " slot hook suspend fasten secure connect press wedge nestle space clip clamp tip park sit lodge sandwich group"
     " tie shelve stow bury hide cram slip pack feed affix anchor angle straddle"
     " hammer tap pop chuck toss fling hitch latch staple stitch peg dab smear immerse submerge dock"
-    " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan"
+    " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan return"
 )
 
 NAMED_LIKE_THINGS = word_set(
