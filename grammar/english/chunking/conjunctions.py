@@ -42,6 +42,7 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + (1 if norm == "unlike" else 2), "instead")
         stands = norm == "that" and self._verbs.get(after) is not None and self._verbs[after].kind == "posture"
         ends = self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";") or stands
+        ends = ends or after in IS_FORMS or after in ("you", "we", "i", "there")
         if norm == "that" and previous == "PREP" and ends:
             return Chunk("NP", at, at + 1, NounPhrase((self.words[at].start, self.words[at].end), pronoun="this"))
         if (
@@ -155,6 +156,8 @@ class JointChunker(VerbChunker):
             return None  # 'stood so close to it'
         if norm == "otherwise" and previous == "SUB":
             return Chunk("ADVERB", at, at + 1, norm)  # 'because otherwise it falls'
+        if norm in ("whatever", "whichever") and not previous and "," in self.norms[at + 2 : at + 8]:
+            return Chunk("SUB", at, at + 1, norm)  # 'whatever she says, the box is under the chair'
         if norm in _WHOEVER:
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:

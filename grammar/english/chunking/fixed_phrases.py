@@ -11,6 +11,7 @@ from deixis.grammar.english.chunking.verb_groups import LAYERS
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
+    PRONOUNS,
     ADVERBS,
     CHAT_WORDS,
     COLLECTIVES,
@@ -108,6 +109,9 @@ class FixedPhraseChunker(JointChunker):
                 )
             ):
                 return Chunk("ADVERB", at, end, " ".join(phrase))
+        able = norm == "as" and self.norms[at + 1] in PRONOUNS and self.norms[at + 2] in ("can", "could", "may", "will")
+        if able and self.norms[at + 4] in CLAUSE_ENDS and self.norms[at + 3].isalpha():
+            return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
         if norm == "from" or (
             norm in DIRECTION_WORDS and self.norms[at + 1] == "to" and self.norms[at + 2] in DIRECTION_WORDS
         ):

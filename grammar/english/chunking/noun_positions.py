@@ -234,7 +234,7 @@ class NounFinder:
         if not norm or at >= len(self.words):
             return False
         if norm in PRONOUNS or norm in DETERMINERS or norm in POSSESSIVES:
-            if norm == "that" and self.norms[at + 1] in (*IS_FORMS, ",", ".", "and"):
+            if norm == "that" and self.norms[at + 1] in (*IS_FORMS, ",", ".", "and", "you", "we", "i", "there"):
                 return True
             return (
                 norm not in ("that", "which", "who")

@@ -31,6 +31,10 @@ PUT_ONLY = word_set(
 )
 
 
+_FALLING_OVER = frozenset({"fall", "topple", "tip", "knock", "keel"})
+"""Verbs of which *over* is a part."""
+
+
 def _with(group: VerbGroup, lemma: str, kind: str, form: str, past: bool | None = None) -> VerbGroup:
     return VerbGroup(
         lemma, kind, form, group.modal, group.positive, group.past if past is None else past, group.adverbs
@@ -250,6 +254,8 @@ class VerbChunker(RelatorChunker):
         apart = self.norms[end] in PARTICLES and (self.norms[end] != "over" or form.lemma in _TURNING_OVER)
         if form.kind == "posture" and apart and self.nouns.is_determiner(end + 1):
             end += group.past or self.norms[i - 1] in ("have", "has", "had", "'ve")
+        if form.lemma in _FALLING_OVER and self.norms[end] == "over" and not self.nouns.starts(end + 1):
+            end += 1  # 'it has fallen over'
         phrasal = _PHRASAL.get((form.lemma, self.norms[end]))
         if phrasal is not None:
             found, end = _with(group, *phrasal, form.form), end + 1
@@ -375,6 +381,8 @@ class VerbChunker(RelatorChunker):
                 return Chunk("GO", at, end, found)
             if imperative and not subject_is_you and norm in NAMED_LIKE_THINGS and not self.nouns.commands(i):
                 return None
+            if imperative and self._inverted_in_statement(i, end):
+                return Chunk("VERB", at, end, found)  # 'it is on the left, and behind it stand the lilies'
             if imperative and (norm in PUT_VERBS or norm in FIND_VERBS) and self._imperative_object(end):
                 kind = "FIND" if norm in FIND_VERBS else "PUT"
                 if norm in ("pick", "point", "look", "single", "search") and self.norms[end] in (
@@ -411,6 +419,13 @@ class VerbChunker(RelatorChunker):
         if self.nouns.is_noun(i) and self._previous() not in ("NP", "REL"):  # third person
             return None
         return self._finite(at, end, found)
+
+    def _inverted_in_statement(self, at: int, end: int) -> bool:
+        """Return True for *stand* after a place and before a plural, in a sentence of statements about things."""
+        last = next((c for c in reversed(self.chunks) if c.type in FINITE | {"PUT", "CUT", "DO"}), None)
+        told = last is not None and last.type in FINITE and self.norms[at] in ("stand", "hang", "rest", "lean", "sit")
+        found = self.nouns.phrase(end, "VERB") if told and self._only_places() and self.nouns.starts(end) else None
+        return found is not None and found[1] is not None and found[1].plural and bool(found[1].head)
 
     def _goes_on_with(self, at: int) -> bool:
         """Return True for an unknown verb after *and* with its object: *each sets a boat on it and takes a crate*."""

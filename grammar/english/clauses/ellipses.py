@@ -32,7 +32,7 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _without_one_of_each_side, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -89,6 +89,16 @@ def _listed(chunks: list[Chunk], at: int) -> tuple[list[Chunk], int]:
         joined = "AND" in (type_at(chunks, i), type_at(chunks, i + 1))
         i += 1 + (type_at(chunks, i + 1) == "AND" and type_at(chunks, i) == "COMMA")
     return (found, i) if joined else ([], at)
+
+
+def _without_one_of_each_side(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *two lamps, one either side of it* as *two lamps either side of it*."""
+    for i in range(1, len(chunks)):
+        types = [type_at(chunks, i + k) for k in range(-1, 3)]
+        one = types == ["NP", "COMMA", "NP", "PREP"] and chunks[i + 1].value.pronoun == "one"
+        if one and chunks[i + 2].value.preposition.relation == "each_side" and chunks[i - 1].value.plural:
+            return [*chunks[:i], *_without_one_of_each_side(chunks[i + 2 :])]
+    return chunks
 
 
 def _is_respective(chunk: Chunk) -> bool:
@@ -219,6 +229,9 @@ def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
     """Return *all but one clause* as two: *all spoons are in it except the ladle, which is in the sink*."""
     for i, chunk in enumerate(chunks):
         excepts = chunk.type == "PREP" and chunk.value.preposition.phrase in ("except", "except for", "besides")
+        if excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in ("BE", "PART", "TPART", "ADJP"):
+            end = end_before(chunks, i + 2, JOINT_TYPES)  # 'all bottles except the one being poured'
+            return [*chunks[:i], *_with_exceptions(chunks[end:])]
         if excepts and [type_at(chunks, i + k) for k in (1, 2, 3)] == ["NP", "COMMA", "REL"]:
             return [*chunks[:i], cut(chunk), chunks[i + 1], *_with_exceptions(chunks[i + 3 :])]
     return chunks

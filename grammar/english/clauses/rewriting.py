@@ -233,6 +233,9 @@ def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
     person = type_at(chunks, at + 1) == "NP" and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
     helped = person and type_at(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"}
     types = [chunk.type for chunk in chunks[max(0, at - 2) : at + 3]]
+    purpose = types == ["BE", "NP", "PREP", "NP", "PREP"] and chunks[at + 1].value.determiner is None
+    if purpose and chunks[at + 1].value.owner is None and type_at(chunks, at - 3) == "THERE":
+        return at + 2, None  # 'there is a tray for mail on the cabinet'
     return (at + 2, None) if helped or types == ["PUT", "NP", "PREP", "NP", "PREP"] else None
 
 

@@ -519,7 +519,7 @@ class References:
         if word in ("it", "itself", "they") and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("it", "this", "that", "itself"):
-            chosen = self._singular(relation, besides)
+            chosen = (self._pointed_at(phrase, relation, besides) if word == "this" else None) or self._singular(relation, besides)
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
         if word in ("he", "she") and relation is not None:
@@ -713,6 +713,17 @@ class References:
                     continue
                 return entity
         return several
+
+    def _pointed_at(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
+        """Return the thing of the last clause that was named last: *it leans on the wall rail, and under that …*."""
+        last = self.recent[0] if self.recent else None
+        if last is None or last.sentence != self.sentence or last.subject is None or last.relation == relation:
+            return None  # 'A to the right of B, and to the right of that C'
+        before = self.text[self.start : phrase.span[0]].casefold()
+        things = [e for e in (last.subject, *last.others) if e.role is Role.THING and not e.members and e is not besides]
+        placed = [(before.rfind(last_word(e.noun)[:4]), i) for i, e in enumerate(things) if e.noun and not e.plural]
+        found = [place for place in placed if place[0] >= 0]
+        return things[max(found)[1]] if len(found) > 1 else None
 
     def _note_doubt(
         self, phrase: NounPhrase, chosen: Entity | None, relation: str | None, besides: Entity | None

@@ -43,6 +43,9 @@ UNARY = frozenset(
     ]
 )
 
+FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire", "tail", "chain", "flex"})
+"""Parts that reach to other places than their wholes."""
+
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 
 
@@ -67,8 +70,8 @@ class Statements(Relations):
                 return  # said of the part alone: 'the rounded edge is at the top'
             if any(a.pronoun in ("it", "they") and not a.head for a in predicate.arguments):
                 return  # 'the drill, its cord wrapped around it'
-            if relation == "upside_down":
-                return  # the label, and not the bottle
+            if relation == "upside_down" or (subject.noun in FLEXIBLE and relation in DIRECTIONS | {"under"}):
+                return  # the label, and not the bottle; the cable, and not the lamp
             subject = subject.whole
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
