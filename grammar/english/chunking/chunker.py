@@ -108,7 +108,7 @@ class Chunker(FixedPhraseChunker):
             return Chunk("DO", at, at + 2, VerbGroup(self.norms[at], "unknown", "base"))  # 'wipe off the oil'
         if (
             self.norms[at] == "back"
-            and self._previous() in FINITE | {"PART", "NP"}
+            and self._previous() in FINITE | {"PART", "NP", "NOT"}
             and (self.norms[at + 1] in prepositions() and self.norms[at + 1] not in ("of", "to"))
         ):
             return Chunk("ADVERB", at, at + 1, "back")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
+from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
@@ -113,6 +114,11 @@ class JointChunker(VerbChunker):
             )
         ):
             return Chunk("PREP", at, at + 1, Relator(Preposition("as", "as")))
+        if norm == "than" and after in ("i", "you", "we", "he", "she", "usual", "expected", "necessary", "one"):
+            ends = (k for k in range(at + 2, len(self.norms)) if self.norms[k] in CLAUSE_ENDS | {"and", "but"})
+            end = next(ends, len(self.words))
+            if after in ("usual", "expected", "necessary") or any(norm in MODALS for norm in self.norms[at + 2 : end]):
+                return Chunk("ADVERB", at, min(end, len(self.words)), "than")  # 'closer to it than I'd like'
         if norm == "than":
             return Chunk("THAN", at, at + 1)
         form = self._verbs.get(after)
@@ -156,6 +162,9 @@ class JointChunker(VerbChunker):
             return None  # 'stood so close to it'
         if norm == "otherwise" and previous == "SUB":
             return Chunk("ADVERB", at, at + 1, norm)  # 'because otherwise it falls'
+        if norm in ("whoever", "whomever") and previous == "PREP" and after in self._verbs:
+            span = self.words[at].start, self.words[at + 1].end
+            return Chunk("NP", at, at + 2, NounPhrase(span, pronoun="someone"))  # 'in front of whoever leads'
         if norm in ("whatever", "whichever") and not previous and "," in self.norms[at + 2 : at + 8]:
             return Chunk("SUB", at, at + 1, norm)  # 'whatever she says, the box is under the chair'
         if norm in _WHOEVER:

@@ -50,6 +50,8 @@ class FixedPhraseChunker(JointChunker):
         needs_to = _CAUSATIVES.get(self.norms[at])
         if needs_to is None or self._previous() not in JOINT_TYPES | {"", "ADVERB"} or not self.nouns.starts(at + 1):
             return None
+        if self.norms[at + 1] == "no":
+            return None  # 'erasers, by the way, have no place on it'
         for i in range(at + 2, min(at + 7, len(self.words))):
             form = self._verbs.get(self.norms[i])
             if form is not None and form.form == "base" and form.kind in ("posture", "lean", "face", "point", "other"):

@@ -195,11 +195,13 @@ class NounFinder:
         name = at > 0 and self.words[at - 1].text == "I"  # the pronoun has 'I'm'
         if (
             at == 0
-            or (not name and self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in ("one", "other", "another"))
+            or (not name and self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in _OWNERS)
             or (self.norms[at - 1] in ("there", "here", "where", "what", "who", "how"))
         ):
             return False
         after = self.norms[at + 1]
+        if after in ("far", "near", "opposite", "inside", "outside") and self.adjective_before_noun(at + 1):
+            return self.norms[at + 2] in PLACE_NOUNS  # 'along the tray's far edge'
         if after in self._closed or after in ("", ",", "."):
             return False
         if after in ("right", "left") and self.norms[at + 2] in _AFTER_SIDE:
@@ -470,7 +472,7 @@ class NounFinder:
         if form.form == "s" and before == "," and self.is_determiner(at + 1):
             return False
         if form.form == "s" and before == "and" and not self._nouns.knows(norm) and not self._lists_plurals(back - 1):
-            if form.kind in ("other", "transitive") and (self.number(at + 1) is not None or self.is_determiner(at + 1)):
+            if form.kind in ("other", "transitive", "face") and (self.number(at + 1) is not None or self.is_determiner(at + 1)):
                 return False  # 'sets a boat on it and takes three crates'
         handled = self._verbs.get(before)
         if form.form == "s" and handled is not None and handled.kind == "transitive" and not after_determiner:
@@ -822,6 +824,9 @@ class NounFinder:
     def _span(self, at: int, end: int) -> Span:
         return self.words[at].start, self.words[end - 1].end
 
+
+_OWNERS = word_set("one other another everyone everybody someone somebody anyone anybody nobody else")
+"""Pronouns that own by *'s*: *within everyone's reach*."""
 
 GENERIC_NOUNS = frozenset({"object", "objects", "agent", "agents", "thing", "item", "dot"})
 

@@ -293,6 +293,8 @@ class VerbChunker(RelatorChunker):
             and self._previous() in JOINT_TYPES | {"", "ADVERB"}
         ):
             return Chunk("DO", at, end + 1, found)
+        if norm == "lay" and self.norms[end] == "out" and self._only_places() and self.nouns.starts(end + 1):
+            return Chunk("PUT", at, end + 1, _with(group, "lay", "posture", "base"))  # 'right of it lay out the probes'
         if norm == "lay" and self._previous() == "NP" and self.norms[at - 1] in ("you", "we"):
             return self._finite(at, end, _with(group, "lay", "posture", "base"))  # 'then you lay the spoon beside it'
         if norm in PAST_ONLY and not (norm == "saw" and self.nouns.is_noun(i)):
@@ -320,6 +322,11 @@ class VerbChunker(RelatorChunker):
             and self.norms[at - 1] == "it"
         ):
             return self._finite(at, end, replace(found, past=True))  # 'it contained a tin'
+        if norm == "set" and self._previous() == "COMMA" and self.norms[end] in ("on", "in", "into", "against", "between"):
+            return Chunk("PART", at, end, _with(group, "set", "posture", "participle"))  # 'the jug, set on its tile'
+        ones = self.norms[end] in ("one", "ones") and form.form in ("past", "participle")
+        if ones and self._previous() in JOINT_TYPES | {"", "PREP"}:
+            return None  # 'and used ones go into the box'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
@@ -366,7 +373,8 @@ class VerbChunker(RelatorChunker):
             imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
-            if subject == "COMMA" and self._awaits_verb() and self._predicate_after(i):
+            owns = norm == "have" and self.norms[end] == "no"
+            if subject == "COMMA" and self._awaits_verb() and (owns or self._predicate_after(i)):
                 return self._finite(at, end, found)  # 'the tweezers, points to the left, lie along the edge'
             crosses = (
                 self.norms[end] in ("over", "across", "round", "around", "on", "along") and self.norms[end + 1] == "to"

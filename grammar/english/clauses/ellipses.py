@@ -32,7 +32,7 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _without_one_of_each_side, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _without_one_of_each_side, _with_own_parts_after, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -98,6 +98,23 @@ def _without_one_of_each_side(chunks: list[Chunk]) -> list[Chunk]:
         one = types == ["NP", "COMMA", "NP", "PREP"] and chunks[i + 1].value.pronoun == "one"
         if one and chunks[i + 2].value.preposition.relation == "each_side" and chunks[i - 1].value.plural:
             return [*chunks[:i], *_without_one_of_each_side(chunks[i + 2 :])]
+    return chunks
+
+
+def _with_own_parts_after(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the bucket, tongs hooked over its rim, is in front* with the aside at the end of the clause."""
+    for i in range(1, len(chunks)):
+        types = [type_at(chunks, i + k) for k in range(-1, 6)]
+        aside = types[:3] == ["NP", "COMMA", "NP"] and types[3] in ("PART", "PREP") and types[0] not in JOINT_TYPES
+        end = i + 3 + (types[3] == "PART" and types[4] == "PREP")
+        own = aside and type_at(chunks, end) == "NP" and type_at(chunks, end + 1) == "COMMA"
+        if not own or type_at(chunks, i - 2) not in JOINT_TYPES | {""} or chunks[i + 1].value.head == "":
+            continue
+        owner = chunks[end].value.owner
+        if owner is None or owner.pronoun not in ("it", "they") or type_at(chunks, end + 2) not in FINITE | {"PREP"}:
+            continue
+        rest = end_before(chunks, end + 2, JOINT_TYPES)
+        return [*chunks[:i], *chunks[end + 2 : rest], cut(chunks[i]), *chunks[i + 1 : end + 1], *chunks[rest:]]
     return chunks
 
 
@@ -229,6 +246,13 @@ def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
     """Return *all but one clause* as two: *all spoons are in it except the ladle, which is in the sink*."""
     for i, chunk in enumerate(chunks):
         excepts = chunk.type == "PREP" and chunk.value.preposition.phrase in ("except", "except for", "besides")
+        bare = excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in JOINT_TYPES | {""}
+        first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
+        nothing = type_at(chunks, first) == "NP" and chunks[first].value.pronoun == "nothing"
+        if bare and nothing and type_at(chunks, first + 1) in FINITE and chunks[first + 1].value.modal is None:
+            told = [c for c in chunks[first + 1 : i] if c.type != "ADVERB"]  # 'nothing is on it except the clock'
+            thing = chunks[i + 1]
+            return [*chunks[:i], cut(chunk), thing, *told, *_with_exceptions(chunks[i + 2 :])]
         if excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in ("BE", "PART", "TPART", "ADJP"):
             end = end_before(chunks, i + 2, JOINT_TYPES)  # 'all bottles except the one being poured'
             return [*chunks[:i], *_with_exceptions(chunks[end:])]

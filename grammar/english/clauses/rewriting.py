@@ -25,6 +25,7 @@ from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Prepos
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
 
+_SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
 _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
 _BREAKS = frozenset({"COMMA", "CUT", "BUT"})
@@ -82,7 +83,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart), _without(_comparison_of_size),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
         _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
@@ -314,6 +315,13 @@ def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
     denied = chunks[at + 1].value.determiner == "no"  # 'phones have no place on the stand'
     group = replace(chunk.value, lemma="be", kind="be", positive=chunk.value.positive is not denied)
     return end, Chunk("BE", chunk.start, chunk.end, group, chunk.span)
+
+
+def _comparison_of_size(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what a thing is compared with: *a globe the size of a pumpkin*."""
+    compared = [type_at(chunks, at + k) for k in (-1, 0, 1, 2)] == ["NP", "NP", "OF", "NP"]
+    sized = compared and chunks[at].value.determiner == "the" and chunks[at].value.head in _SIZES
+    return (at + 3, None) if sized else None
 
 
 def _count_apart(chunks: list[Chunk], at: int) -> _Run | None:

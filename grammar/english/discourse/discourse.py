@@ -10,6 +10,7 @@ from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import (
     CONSEQUENCE,
     ELSEWHERE,
+    EVENT,
     FRAMED,
     FUTURE,
     HABIT,
@@ -282,9 +283,8 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
-        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
-            self.text[self.references.start : self.end]
-        )
+        said = self.text[self.references.start : self.end]
+        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(said) or EVENT.match(said)
         if limit is not None and self.how.condition is None:
             self.how = replace(self.how, condition=limit[0].strip(" ,."))
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))

@@ -588,6 +588,8 @@ class References:
                 for entity in self._known():
                     if _same_noun(entity.noun, noun) and any(("colour", c) in entity.adjectives for c in colours):
                         return entity
+                if noun in PEOPLE:  # 'the guests; the blue lies behind the brie'
+                    return self._new(replace(phrase, head=min(colours), adjectives=(), pronoun=None), Role.THING)
                 group = self.last_group(besides)
                 if group is None or not _same_noun(group.noun, noun):
                     entity = Entity(noun, born=self.sentence)
@@ -627,6 +629,9 @@ class References:
             bare = phrase.pronoun == "one" and phrase.determiner is None and not phrase.adjectives
             if bare and many is not None and many.plural and not phrase.predicates:
                 return many  # 'fold the napkins and tuck one under each fork'
+            kinds = phrase.pronoun == "one" and phrase.plural and bool(phrase.adjectives) and not phrase.determiner
+            if kinds and many is not None and many.plural and many.noun and many.role is Role.THING:
+                return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
             return self._another_one(phrase, besides, relation)
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":

@@ -14,7 +14,7 @@ ARRANGEMENTS = word_set(
 """Nouns after *in* that say how several things lie."""
 CIRCUMSTANCES = word_set(
     "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
-    " setting settings"
+    " setting settings game games emergency emergencies"
 )
 """Nouns that name no place after *in*, *at*, *as*, *on* and *under*: *in a formal setting*."""
 NOT_PLACES = word_set(
