@@ -8,6 +8,7 @@ from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, NEGATIONS, PRONOUNS
+from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -54,7 +55,8 @@ class JointChunker(VerbChunker):
         excepts = (norm, after) in (("apart", "from"), ("aside", "from")) and previous in ("", "COMMA", "CUT")
         if excepts:
             return Chunk("PREP", at, at + 2, Relator(Preposition("apart from", "-")))  # 'apart from the lid, …'
-        if norm == "by" and self._is_name(at + 1):
+        agent = after in ("a", "an") and self.norms[at + 2] in PEOPLE and previous == "NP"
+        if norm == "by" and (agent or self._is_name(at + 1)):
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'a seascape by Turner'
         form = self._verbs.get(self.norms[at + 2])
         if (norm, after) == ("far", "from") and form is not None and form.form == "ing":

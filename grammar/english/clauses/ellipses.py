@@ -32,7 +32,7 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _without_one_of_each_side, _with_own_parts_after, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -118,6 +118,16 @@ def _with_own_parts_after(chunks: list[Chunk]) -> list[Chunk]:
     return chunks
 
 
+def _without_ends_of_the_past(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the radio, which stood on it until it hummed, is …* without the clause of *until*."""
+    for i, chunk in enumerate(chunks):
+        until = chunk.type == "SUB" and chunk.value == "until" and "REL" in [c.type for c in chunks[:i]]
+        end = end_before(chunks, i + 1, frozenset({"COMMA", "CUT"}))
+        if until and type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in FINITE:
+            return [*chunks[:i], *chunks[end:]]
+    return chunks
+
+
 def _is_respective(chunk: Chunk) -> bool:
     """Return True for *respectively* and *in that order*."""
     adverb = chunk.type == "ADVERB" and chunk.value in ("in that order", "in this order", "in order")
@@ -125,8 +135,16 @@ def _is_respective(chunk: Chunk) -> bool:
 
 
 def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *there stands a clock in the corner* as *there is a clock in the corner*."""
+    """Return *there stands a clock in the corner* and *first comes a clock …* as *there is a clock in the corner*."""
     found = list(chunks)
+    begins = type_at(found, 0) == "ADVERB" or (
+        type_at(found, 0) == "NP" and not found[0].value.head and any(a.rank for a in found[0].value.adjectives)
+    )
+    comes = begins and type_at(found, 1) == "VERB" and found[1].value.lemma in ("come", "go", "follow")
+    if comes and type_at(found, 2) == "NP" and found[2].value.determiner in ("a", "an", None):
+        verb = found[1]
+        be = Chunk("BE", verb.start, verb.end, replace(verb.value, lemma="be", kind="be"), verb.span)
+        found[:2] = [replace(found[0], type="THERE", value=None), be]
     for i in range(1, len(found)):
         verb = found[i]
         if found[i - 1].type == "THERE" and verb.type in ("VERB", "TVERB", "PUT") and verb.value.kind == "posture":

@@ -45,6 +45,10 @@ UNCERTAIN = frozenset({"might", "may", "could", "would"})
 
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
 
+LABEL = re.compile(
+    r"\s*(?:first|second|third|next|then|last)?\s*:\s*(?P<again>(?:[\w'\u2019-]+\s+){0,3}(?:it|them|they)\b)?", re.IGNORECASE
+)
+"""Words after a label of what follows: *towel first: fold it*."""
 MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
 """Properties that a part and its whole need not share."""
 BARE_AFTER_BE = re.compile(
@@ -108,7 +112,8 @@ class Discourse(Statements):
             if predicate.relation == "row":
                 self.order = predicate.part or self.order
         listed = phrase.members or (phrase,)
-        label = self.text[phrase.span[1] :].lstrip().startswith(":") and phrase.plural and bool(phrase.head)
+        mark = LABEL.match(self.text[phrase.span[1] : self.end])
+        label = mark is not None and (phrase.plural or mark["again"] is not None) and bool(phrase.head)
         if label and phrase.determiner is None and not phrase.predicates and not self.how.uncertain:
             labelled = self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
             if labelled is not None:

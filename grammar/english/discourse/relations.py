@@ -277,6 +277,8 @@ class Relations(Mentions):
         persons = [e for e in entities if e.role in (Role.VIEWER, Role.PERSON)]
         if ends and (len(ends) > 1 or ends[0].size > 1):
             self._add("between", (subject,), tuple(ends))
+        elif not ends and persons and (len(persons) > 1 or persons[0].plural or persons[0].size > 1):
+            self._add("between", (subject,), (), value=persons[0].noun)
         elif ends and persons:
             self._add("between", (subject,), tuple(ends), value=persons[0].noun)
 

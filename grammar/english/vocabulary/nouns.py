@@ -116,6 +116,13 @@ PEOPLE = frozenset(
         "crew",
         "staff",
         "member",
+        *("volunteer", "officer", "clerk", "client", "priest", "celebrant", "apprentice", "trainee", "technician"),
+        *("mechanic", "tailor", "baker", "steward", "porter", "voter", "referee", "opponent"),
+        *("audience", "congregation", "manager", "supervisor", "tenant", "landlord", "resident", "carer", "midwife"),
+        *("surgeon", "therapist", "vet", "farmer", "gardener", "hairdresser", "barber", "musician", "singer"),
+        *("soloist", "conductor", "photographer", "painter", "artist", "sculptor", "potter", "pupil", "bride"),
+        *("groom", "arbiter", "librarian", "plumber", "electrician", "carpenter", "butcher", "grocer", "cashier"),
+        *("follower", "worshipper", "parishioner", "novice", "newcomer", "beginner", "stranger"),
     ]
 )
 """Nouns of people, who are not objects of the scene."""
