@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
+from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, NEGATIONS, PRONOUNS
-from deixis.grammar.english.vocabulary.nouns import PEOPLE
+from deixis.grammar.english.vocabulary.nouns import EVENTS, PEOPLE, last_word
 from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -52,6 +53,8 @@ class JointChunker(VerbChunker):
             and any(c.type == "PUT" and c.value.lemma == "keep" for c in self.chunks)
         ):  # fmt: skip
             return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
+        if norm in ("before", "after") and self._is_event(at + 1):
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'before your first shift'
         excepts = (norm, after) in (("apart", "from"), ("aside", "from")) and previous in ("", "COMMA", "CUT")
         if excepts:
             return Chunk("PREP", at, at + 2, Relator(Preposition("apart from", "-")))  # 'apart from the lid, …'
@@ -181,6 +184,11 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + 1, norm)
         return None
 
+    def _is_event(self, at: int) -> bool:
+        """Return True for a noun phrase that names an event: *your first shift*."""
+        found = self.nouns.phrase(at, "PREP") if self.nouns.starts(at) else None
+        return found is not None and found[1] is not None and last_word(found[1].head) in EVENTS
+
     def _clause_follows(self, at: int) -> bool:
         """Return True if a noun phrase with a verb after it begins here: *before the guests enter*."""
         found = self.nouns.phrase(at, "SUB") if self.nouns.starts(at) else None
@@ -188,6 +196,12 @@ class JointChunker(VerbChunker):
             return False
         norm = self.norms[found[0]]
         form = self._verbs.get(norm)
+        phrase, last = found[1], self.norms[found[0] - 1]
+        unknown = last.endswith("s") and not last.endswith("ss") and found[0] - at > 2 and norm in CLAUSE_ENDS
+        if unknown and phrase.plural and phrase.determiner == "the" and not self.nouns.is_known_noun(last):
+            inner = self.norms[found[0] - 2]
+            if self.nouns.is_known_noun(inner) and not is_adjective(inner) and not is_known(last):
+                return True  # 'before the water boils'
         return (
             norm in IS_FORMS
             or norm in MODALS

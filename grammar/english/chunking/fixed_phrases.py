@@ -70,6 +70,9 @@ class FixedPhraseChunker(JointChunker):
         if self.norms[at : at + 3] == ["do", "not", "you"]:  # 'don't you ever put it there'
             self._denied = "must"
             return at + 3 + (self.norms[at + 3] in ("ever", "dare", "go"))
+        if self.norms[at] == "nor" and self.norms[at + 1] in MODALS and self.nouns.starts(at + 2):
+            self._denied = MODALS[self.norms[at + 1]]
+            return at + 2  # 'nor may they stand on it'
         for phrase in (*_DENIALS, *self._denied_circumstances(at)):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase:
@@ -97,6 +100,9 @@ class FixedPhraseChunker(JointChunker):
         norm = self.norms[at]
         previous_joint = self._previous() in ("", "COMMA", "AND", "BUT", "CUT", "ADVERB")
         related = self._relations.longest(self.norms, at)
+        able = norm == "as" and self.norms[at + 1] in PRONOUNS and self.norms[at + 2] in ("can", "could", "may", "will")
+        if able and self.norms[at + 4] in CLAUSE_ENDS and self.norms[at + 3].isalpha():
+            return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
             longer = related is not None and related[0] > end  # 'out of reach of the cat'
@@ -111,9 +117,6 @@ class FixedPhraseChunker(JointChunker):
                 )
             ):
                 return Chunk("ADVERB", at, end, " ".join(phrase))
-        able = norm == "as" and self.norms[at + 1] in PRONOUNS and self.norms[at + 2] in ("can", "could", "may", "will")
-        if able and self.norms[at + 4] in CLAUSE_ENDS and self.norms[at + 3].isalpha():
-            return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
         if norm == "from" or (
             norm in DIRECTION_WORDS and self.norms[at + 1] == "to" and self.norms[at + 2] in DIRECTION_WORDS
         ):

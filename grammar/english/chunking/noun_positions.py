@@ -365,6 +365,8 @@ class NounFinder:
             if norm == "can" and before[:1].isalpha() and before not in self._closed and not is_adjective(before):
                 follows = self._verbs.get(after)
                 goes = follows is not None and follows.form == "base"
+                if before in PEOPLE and self.norms[at + 2] in prepositions():
+                    return False  # 'your baby can nap in it'
                 if goes and (self._nouns.singular(before)[1] or self._predicate_follows(at + 1)):
                     return False  # 'the candles can stay', 'the lid can stand on it'
             return norm == "can" and not (after in ("be", "not", "see", "have", "you", "also") or before in PRONOUNS)

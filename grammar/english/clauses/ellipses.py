@@ -8,6 +8,7 @@ from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk
 from deixis.grammar.english.clauses.editing import cut, end_before, type_at
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.nouns import PARTS
 from deixis.grammar.english.vocabulary.tables import word_set
 
 _LOOKING = word_set("look peek peep peer search check open lift")
@@ -32,7 +33,7 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -106,6 +107,10 @@ def _with_own_parts_after(chunks: list[Chunk]) -> list[Chunk]:
     for i in range(1, len(chunks)):
         types = [type_at(chunks, i + k) for k in range(-1, 6)]
         aside = types[:3] == ["NP", "COMMA", "NP"] and types[3] in ("PART", "PREP") and types[0] not in JOINT_TYPES
+        part = types[:5] == ["NP", "COMMA", "NP", "ADV", "COMMA"] and chunks[i + 1].value.determiner is None
+        if part and chunks[i + 1].value.head in PARTS and type_at(chunks, i + 4) == "PREP":
+            rest = end_before(chunks, i + 4, JOINT_TYPES)  # 'top hat, brim up, in the middle of the table'
+            return [*chunks[:i], *chunks[i + 4 : rest], chunks[i], *chunks[i + 1 : i + 3], *chunks[rest:]]
         end = i + 3 + (types[3] == "PART" and types[4] == "PREP")
         own = aside and type_at(chunks, end) == "NP" and type_at(chunks, end + 1) == "COMMA"
         if not own or type_at(chunks, i - 2) not in JOINT_TYPES | {""} or chunks[i + 1].value.head == "":
@@ -125,6 +130,23 @@ def _without_ends_of_the_past(chunks: list[Chunk]) -> list[Chunk]:
         end = end_before(chunks, i + 1, frozenset({"COMMA", "CUT"}))
         if until and type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in FINITE:
             return [*chunks[:i], *chunks[end:]]
+    return chunks
+
+
+def _with_denied_predicates(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the pens are in the box; the ruler isn't* with what the ruler is denied."""
+    for i in range(4, len(chunks)):
+        verb = chunks[i]
+        denies = verb.type in FINITE and verb.value.lemma in ("do", "be") and not verb.value.positive
+        bare = denies and verb.value.modal is None and type_at(chunks, i + 1) in JOINT_TYPES | {""}
+        if not bare or type_at(chunks, i - 1) != "NP" or type_at(chunks, i - 2) not in JOINT_TYPES:
+            continue
+        first = max((k + 1 for k in range(i - 2) if chunks[k].type in JOINT_TYPES), default=0)
+        types = [c.type for c in chunks[first : i - 2]]
+        if types[:3] in (["NP", "VERB", "PREP"], ["NP", "BE", "PREP"]) and chunks[first + 1].value.positive:
+            told = replace(chunks[first + 1], value=replace(chunks[first + 1].value, positive=False))
+            said = [told, *chunks[first + 2 : i - 2]]
+            return [*chunks[:i], *said, cut(verb), *_with_denied_predicates(chunks[i + 1 :])]
     return chunks
 
 

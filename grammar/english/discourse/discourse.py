@@ -181,8 +181,9 @@ class Discourse(Statements):
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
         if phrase is None or not phrase.head or phrase.determiner in ("a", "an", "no", "any"):
             return
-        if phrase.determiner is None and phrase.owner is None and not phrase.plural:
-            return
+        alone = self.text[self.references.start : self.end].strip().rstrip("?").casefold() == phrase.head
+        if phrase.determiner is None and phrase.owner is None and not phrase.plural and not alone:
+            return  # 'bread? in a basket'
         asked = self.references.find(replace(phrase, predicates=()))
         if asked is not None and asked.role is Role.THING:
             self.references.recent.insert(0, Focus(asked, [], None, self.references.sentence))

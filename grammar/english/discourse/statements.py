@@ -7,7 +7,7 @@ from dataclasses import replace
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
 from deixis.grammar.english.discourse.mentions import SUPERLATIVES
-from deixis.grammar.english.discourse.references import POLES
+from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, SUPPORTS, Relations
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
@@ -220,7 +220,12 @@ class Statements(Relations):
                     self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")
             elif phrase.head:
                 phrase = self._placed_on(phrase, subject)
+                own = subject.role is Role.THING and any(a.pronoun == "it" for p in phrase.predicates for a in p.arguments)
+                if own:  # 'the bucket is by the hatch with the lemons beside it'
+                    self.references.recent.insert(0, Focus(subject, [], None, self.how.sentence))
                 held = self._introduce(phrase, "with", subject)
+                if own:
+                    self.references.recent.pop(0)
                 part = (
                     phrase.plural
                     and phrase.determiner is None

@@ -237,6 +237,7 @@ IDIOMS = tuple(
         "in that case",
         "next time",
         "last but not least",
+        *("under repair", "under construction", "under way", "in need of repair"),
         *("as you sit", "as you work", "as you sit down"),
         "yes",
         "alas",

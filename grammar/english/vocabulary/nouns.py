@@ -218,6 +218,13 @@ VIEWER = "viewer"
 
 VIEWER_WORDS = frozenset({"me", "i", "you", "we", "us", "myself", "yourself"})
 
+EVENTS = frozenset(
+    ["shift", "class", "lesson", "service", "show", "rehearsal", "session", "game", "match", "meeting", "meal", "dinner",
+     "lunch", "breakfast", "supper", "concert", "performance", "ceremony", "wedding", "opening", "closing", "visit",
+     "arrival", "departure", "exam", "trip", "journey", "use", "school", "work", "bedtime", "christmas", "easter"]
+)  # fmt: skip
+"""Nouns of events, before and after which is a time."""
+
 PLACES_OF = frozenset({"home", "place", "spot", "position", "location"})
 """Nouns of the place of a thing, of which a place is that of the thing: *the place of the jug is on the shelf*."""
 
