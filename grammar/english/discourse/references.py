@@ -752,6 +752,10 @@ class References:
         last = self.recent[0] if self.recent else None
         if both and last is not None and last.sentence == self.sentence and len(last.others) == 2:
             return Entity("", members=list(last.others))  # 'it has a fork and a spoon, both …'
+        before = self.recent[0].subject if self.recent and self.recent[0].sentence == self.sentence else None
+        if relation is None and not both and before is not None and before.role is Role.THING:
+            if before.itself.members or before.plural:
+                return before  # 'the nuts must not be next to the cereals, nor may they stand …'
         for group in reversed(self.named):
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'
