@@ -120,10 +120,10 @@ class JointChunker(VerbChunker):
         ):
             return Chunk("PREP", at, at + 1, Relator(Preposition("as", "as")))
         if norm == "than" and after in ("i", "you", "we", "he", "she", "usual", "expected", "necessary", "one"):
-            ends = (k for k in range(at + 2, len(self.norms)) if self.norms[k] in CLAUSE_ENDS | {"and", "but"})
-            end = next(ends, len(self.words))
+            stops = (k for k in range(at + 2, len(self.words)) if self.norms[k] in CLAUSE_ENDS | {"and", "but"})
+            end = next(stops, len(self.words))
             if after in ("usual", "expected", "necessary") or any(norm in MODALS for norm in self.norms[at + 2 : end]):
-                return Chunk("ADVERB", at, min(end, len(self.words)), "than")  # 'closer to it than I'd like'
+                return Chunk("ADVERB", at, end, "than")  # 'closer to it than I'd like'
         if norm == "than":
             return Chunk("THAN", at, at + 1)
         form = self._verbs.get(after)

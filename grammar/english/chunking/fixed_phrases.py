@@ -11,7 +11,6 @@ from deixis.grammar.english.chunking.verb_groups import LAYERS
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
-    PRONOUNS,
     ADVERBS,
     CHAT_WORDS,
     COLLECTIVES,
@@ -20,6 +19,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     IS_FORMS,
     MODALS,
     NEGATIONS,
+    PRONOUNS,
 )
 from deixis.grammar.english.vocabulary.idioms import IDIOMS
 from deixis.grammar.english.vocabulary.nouns import PARTS

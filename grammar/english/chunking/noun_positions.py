@@ -348,8 +348,8 @@ class NounFinder:
         before = self.norms[back] if at else ""
         after = self.norms[at + 1]
         form = self._verbs.get(norm)
-        relative = back < at - 1 and before in ("which", "who", "that") and form is not None and form.form in ("s", "base")
-        if relative and form is not None and form.kind in ("posture", "lean") and self._predicate_follows(at):
+        stands = form is not None and form.form in ("s", "base") and form.kind in ("posture", "lean")
+        if back < at - 1 and before in ("which", "who", "that") and stands and self._predicate_follows(at):
             return False  # 'which now lies on it'
         if before == "please" and (form is None or form.form == "base") and norm.isalpha():
             return False
@@ -473,13 +473,14 @@ class NounFinder:
             return False
         if form.form == "s" and before == "," and self.is_determiner(at + 1):
             return False
-        if form.form == "s" and before == "and" and not self._nouns.knows(norm) and not self._lists_plurals(back - 1):
-            if form.kind in ("other", "transitive", "face") and (self.number(at + 1) is not None or self.is_determiner(at + 1)):
-                return False  # 'sets a boat on it and takes three crates'
+        second = form.form == "s" and before == "and" and form.kind in ("other", "transitive", "face")
+        second = second and not self._nouns.knows(norm) and not self._lists_plurals(back - 1)
+        if second and (self.number(at + 1) is not None or self.is_determiner(at + 1)):
+            return False  # 'sets a boat on it and takes three crates'
         handled = self._verbs.get(before)
-        if form.form == "s" and handled is not None and handled.kind == "transitive" and not after_determiner:
-            if handled.form == "base" and not self.is_determiner(at + 1) and self._nouns.singular(norm)[1]:
-                return not self._predicate_follows(at)  # 'the jars hold nails and screws'
+        holds = handled is not None and handled.kind == "transitive" and handled.form == "base"
+        if form.form == "s" and holds and not after_determiner and self._nouns.singular(norm)[1]:
+            return not self.is_determiner(at + 1) and not self._predicate_follows(at)  # 'they hold nails and screws'
         if (
             form.form == "s"
             and before in (",", "and")
@@ -827,7 +828,9 @@ class NounFinder:
         return self.words[at].start, self.words[end - 1].end
 
 
-_OWNERS = word_set("one other another everyone everybody someone somebody anyone anybody nobody else")
+_ANYBODY = frozenset(f"{quantity}{person}" for quantity in ("every", "some", "any", "no") for person in ("one", "body"))
+
+_OWNERS = _ANYBODY | {"one", "other", "another", "else"}
 """Pronouns that own by *'s*: *within everyone's reach*."""
 
 GENERIC_NOUNS = frozenset({"object", "objects", "agent", "agents", "thing", "item", "dot"})

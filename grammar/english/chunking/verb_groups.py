@@ -322,7 +322,8 @@ class VerbChunker(RelatorChunker):
             and self.norms[at - 1] == "it"
         ):
             return self._finite(at, end, replace(found, past=True))  # 'it contained a tin'
-        if norm == "set" and self._previous() == "COMMA" and self.norms[end] in ("on", "in", "into", "against", "between"):
+        placed = self.norms[end] in ("on", "in", "into", "against", "between")
+        if norm == "set" and self._previous() == "COMMA" and placed:
             return Chunk("PART", at, end, _with(group, "set", "posture", "participle"))  # 'the jug, set on its tile'
         ones = self.norms[end] in ("one", "ones") and form.form in ("past", "participle")
         if ones and self._previous() in JOINT_TYPES | {"", "PREP"}:

@@ -304,8 +304,8 @@ class Assembly:
         objects = [v.thing.phrase for v in verbs if v.thing is not None and v.thing.phrase.head]
         acting = built.shape == "statement" and subject.phrase.pronoun in ("me", "we", "you")
         if acting and objects and len(self.clauses) == known:  # 'we use a lamp, and it hangs over the bar'
-            handled = replace(objects[-1], predicates=())
-            self._append(Clause(handled, (), span, Mood.COMMAND, step=self.raw.step), link)
+            made = replace(objects[-1], predicates=())
+            self._append(Clause(made, (), span, Mood.COMMAND, step=self.raw.step), link)
         told = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
         self.is_lost = told and len(self.clauses) == known
 

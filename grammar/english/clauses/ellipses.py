@@ -33,7 +33,8 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after, _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after,
+        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -74,7 +75,7 @@ def with_pairs_apart(chunks: list[Chunk]) -> list[Chunk]:
         for thing, place in zip(things, places, strict=True):
             value = place.value if place.value.head else replace(place.value, head=places[-1].value.head)
             here = replace(place, value=replace(value, determiner=value.determiner or "the"))
-            found += [*chunks[begin : i], thing, *chunks[verb:end], chunks[end], here, *of, cut(place)]
+            found += [*chunks[begin:i], thing, *chunks[verb:end], chunks[end], here, *of, cut(place)]
         return [*found, *with_pairs_apart(chunks[rest:])]
     return chunks
 
@@ -291,8 +292,10 @@ def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
         nothing = type_at(chunks, first) == "NP" and chunks[first].value.pronoun == "nothing"
         if bare and nothing and type_at(chunks, first + 1) in FINITE and chunks[first + 1].value.modal is None:
             told = [c for c in chunks[first + 1 : i] if c.type != "ADVERB"]  # 'nothing is on it except the clock'
-            thing = chunks[i + 1]
-            return [*chunks[:i], cut(chunk), thing, *told, *_with_exceptions(chunks[i + 2 :])]
+            thing, rest = chunks[i + 1], chunks[i + 2 :]
+            if [type_at(rest, k) for k in (0, 1)] == ["COMMA", "REL"]:
+                rest = [cut(rest[0]), replace(thing), *rest[2:]]  # '…, which must be 1 m from the wall'
+            return [*chunks[:i], cut(chunk), thing, *told, *_with_exceptions(rest)]
         if excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in ("BE", "PART", "TPART", "ADJP"):
             end = end_before(chunks, i + 2, JOINT_TYPES)  # 'all bottles except the one being poured'
             return [*chunks[:i], *_with_exceptions(chunks[end:])]

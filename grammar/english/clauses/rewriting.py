@@ -83,8 +83,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart), _without(_comparison_of_size),
-        _without(_turn), _without(_posture_of_the_person),
+        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
         _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
@@ -326,7 +326,7 @@ def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
 
 def _turn(chunks: list[Chunk], at: int) -> _Run | None:
     """Find the turn of a thing in a list of steps: *towel first: fold it*, *the guest first: a beaker …*."""
-    turn = type_at(chunks, at - 1) == "NP" and chunks[at].type == "NP" and type_at(chunks, at + 1) == "COLON" and at == 1
+    turn = at == 1 and [type_at(chunks, k) for k in range(3)] == ["NP", "NP", "COLON"]
     ranked = turn and not chunks[at].value.head and chunks[at].value.determiner is None
     return (at + 1, None) if ranked and any(a.rank for a in chunks[at].value.adjectives) else None
 

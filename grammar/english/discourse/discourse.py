@@ -46,7 +46,8 @@ UNCERTAIN = frozenset({"might", "may", "could", "would"})
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
 
 LABEL = re.compile(
-    r"\s*(?:first|second|third|next|then|last)?\s*:\s*(?P<again>(?:[\w'\u2019-]+\s+){0,3}(?:it|them|they)\b)?", re.IGNORECASE
+    r"\s*(?:first|second|third|next|then|last)?\s*:\s*(?P<again>(?:[\w'\u2019-]+\s+){0,3}(?:it|them|they)\b)?",
+    re.IGNORECASE,
 )
 """Words after a label of what follows: *towel first: fold it*."""
 MEASURES = frozenset({"size", "height", "length", "width", "thickness"})

@@ -16,7 +16,7 @@ from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
 from deixis.ontology.graph.claims import PLACES
 
-ABSOLUTE = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
+VERB_AFTER = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
 """Verb after a noun phrase, without which it tells how the thing before it is: *its flap opening away from you*."""
 
 SUPERLATIVES = {
@@ -228,12 +228,16 @@ class Mentions(Drafting, ABC):
         )  # fmt: skip
         if focus:
             last = self.references.recent[0] if self.references.recent else None
-            own = phrase is not None and phrase.owner is not None and phrase.owner.pronoun == "it" and bool(phrase.head)
             here = last is not None and last.sentence == self.how.sentence and last.subject is not entity
-            at = int(own and here and phrase is not None and ABSOLUTE.match(self.text[phrase.span[1] : self.end]) is None)
-            self.references.recent.insert(at, Focus(entity, others, relation, self.how.sentence))
+            own = phrase is not None and bool(phrase.head) and self._is_absolute(phrase)
+            self.references.recent.insert(int(own and here), Focus(entity, others, relation, self.how.sentence))
         else:
             self.references.recent.append(Focus(entity, others, relation, self.how.sentence))
+
+    def _is_absolute(self, phrase: NounPhrase) -> bool:
+        """Return True for a part of the thing before, of which no verb follows: *its flap opening away from you*."""
+        part = phrase.owner is not None and phrase.owner.pronoun == "it"
+        return part and VERB_AFTER.match(self.text[phrase.span[1] : self.end]) is None
 
     def _argument(self, phrase: NounPhrase, relation: str, subject: Entity | None) -> Entity | Region | None:
         if relation in ("inside", "on") and phrase.of is not None and (

@@ -210,9 +210,9 @@ class References:
             if whole is not None:
                 return Entity(last, Role.PART, whole=whole)  # 'the knife blade'
         whose = phrase.owner or phrase.of
-        if whose is not None and noun in PLACES_OF and relation is None and last_word(whose.head) not in PEOPLE:
-            if whose.pronoun not in VIEWER_WORDS | {"we", "he", "she"}:
-                return self.find(whose, relation, besides)  # 'the home of the bucket is under the tap'
+        placed = whose is not None and noun in PLACES_OF and relation is None and last_word(whose.head) not in PEOPLE
+        if placed and whose is not None and whose.pronoun not in VIEWER_WORDS | {"we", "he", "she"}:
+            return self.find(whose, relation, besides)  # 'the home of the bucket is under the tap'
         if phrase.of is not None and last in GENERAL:
             counted = phrase.count is not None and phrase.of.count is None and phrase.of.determiner is None
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
@@ -519,7 +519,8 @@ class References:
         if word in ("it", "itself", "they") and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("it", "this", "that", "itself"):
-            chosen = (self._pointed_at(phrase, relation, besides) if word == "this" else None) or self._singular(relation, besides)
+            pointed = self._pointed_at(phrase, relation, besides) if word == "this" else None
+            chosen = pointed or self._singular(relation, besides)
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
         if word in ("he", "she") and relation is not None:
@@ -725,8 +726,9 @@ class References:
         if last is None or last.sentence != self.sentence or last.subject is None or last.relation == relation:
             return None  # 'A to the right of B, and to the right of that C'
         before = self.text[self.start : phrase.span[0]].casefold()
-        things = [e for e in (last.subject, *last.others) if e.role is Role.THING and not e.members and e is not besides]
-        placed = [(before.rfind(last_word(e.noun)[:4]), i) for i, e in enumerate(things) if e.noun and not e.plural]
+        things = [e for e in (last.subject, *last.others) if e.role is Role.THING and e.noun and e is not besides]
+        single = [not (e.members or e.plural) for e in things]
+        placed = [(before.rfind(last_word(e.noun)[:4]), i) for i, e in enumerate(things) if single[i]]
         found = [place for place in placed if place[0] >= 0]
         return things[max(found)[1]] if len(found) > 1 else None
 
@@ -753,9 +755,9 @@ class References:
         if both and last is not None and last.sentence == self.sentence and len(last.others) == 2:
             return Entity("", members=list(last.others))  # 'it has a fork and a spoon, both …'
         before = self.recent[0].subject if self.recent and self.recent[0].sentence == self.sentence else None
-        if relation is None and not both and before is not None and before.role is Role.THING:
-            if before.itself.members or before.plural:
-                return before  # 'the nuts must not be next to the cereals, nor may they stand …'
+        many = before is not None and before.role is Role.THING and bool(before.itself.members or before.plural)
+        if many and relation is None and not both:
+            return before  # 'the nuts must not be next to the cereals, nor may they stand …'
         for group in reversed(self.named):
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'

@@ -90,9 +90,9 @@ class Relations(Mentions):
         if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
         forms = all(last_word(a.head) in _FORMS and a.determiner not in ("the", "each") for a in predicate.arguments)
-        if relation == "inside" and predicate.arguments and forms:
-            if self.text[slice(*predicate.span)].casefold().startswith("into"):
-                return  # 'fold it into a rectangle'
+        into = self.text[slice(*predicate.span)].casefold().startswith("into")
+        if into and relation == "inside" and predicate.arguments and forms:
+            return  # 'fold it into a rectangle'
         if relation in ("at", "on") and self._at_the_other(subject, predicate):
             return
         found: list[Entity | Region] = []

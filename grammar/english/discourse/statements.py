@@ -220,11 +220,11 @@ class Statements(Relations):
                     self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")
             elif phrase.head:
                 phrase = self._placed_on(phrase, subject)
-                own = subject.role is Role.THING and any(a.pronoun == "it" for p in phrase.predicates for a in p.arguments)
-                if own:  # 'the bucket is by the hatch with the lemons beside it'
+                own = any(a.pronoun == "it" for p in phrase.predicates for a in p.arguments)
+                if own and subject.role is Role.THING:  # 'the bucket is by the hatch with the lemons beside it'
                     self.references.recent.insert(0, Focus(subject, [], None, self.how.sentence))
                 held = self._introduce(phrase, "with", subject)
-                if own:
+                if own and subject.role is Role.THING:
                     self.references.recent.pop(0)
                 part = (
                     phrase.plural

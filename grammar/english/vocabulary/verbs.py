@@ -89,8 +89,8 @@ other: lead leads led led leading, separate, shine shines shone shone shining, b
 
 REPORTS = word_set(
     "states claims reports says insists maintains asserts swears testifies stated claimed reported said insisted"
-    " maintained asserted swore testified alleges alleged assume assumes assumed suppose supposes presume presumes reckon"
-    " reckons suggest suggests suggested recommend recommends advise advises argue argues pretend pretends"
+    " maintained asserted swore testified alleges alleged assume assumes assumed suppose supposes presume presumes"
+    " reckon reckons suggest suggests suggested recommend recommends advise advises argue argues pretend pretends"
 )
 """Verbs of persons who tell something that need not be so."""
 
