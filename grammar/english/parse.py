@@ -17,6 +17,7 @@ from deixis.grammar.english.chunking.shared_heads import with_shared_heads
 from deixis.grammar.english.clauses.assemble import Assembly, Found
 from deixis.grammar.english.clauses.build import Builder
 from deixis.grammar.english.clauses.built import Built, notes
+from deixis.grammar.english.clauses.ellipses import with_pairs_apart
 from deixis.grammar.english.clauses.joints import Segment, classify, segments
 from deixis.grammar.english.clauses.readings import other_joints, settled
 from deixis.grammar.english.clauses.rewriting import rewritten
@@ -179,7 +180,7 @@ def _parsed(
                 Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
             )
         elif not raw.heading:
-            found_chunks = Chunker(words, nouns, verbs).run() if joined is None else joined
+            found_chunks = with_pairs_apart(Chunker(words, nouns, verbs).run()) if joined is None else joined
             chunks = rewritten([replace(chunk) for chunk in found_chunks], text)
             assembly.hedges = [
                 (chunk.span[0], chunk.value)

@@ -106,9 +106,12 @@ class Chunker(FixedPhraseChunker):
             and self.norms[at].isalpha() and self.norms[at] not in DIRECTION_WORDS and not self._relator(at)
         ):  # fmt: skip
             return Chunk("DO", at, at + 2, VerbGroup(self.norms[at], "unknown", "base"))  # 'wipe off the oil'
+        back = self.norms[at : at + 2] == ["right", "back"] and self._previous() in FINITE | {"PART"}
+        if back and self.norms[at + 2] in prepositions():
+            return Chunk("ADVERB", at, at + 2, "back")  # 'pushed right back against the wall'
         if (
             self.norms[at] == "back"
-            and self._previous() in FINITE | {"PART", "NP"}
+            and self._previous() in FINITE | {"PART", "NP", "NOT"}
             and (self.norms[at + 1] in prepositions() and self.norms[at + 1] not in ("of", "to"))
         ):
             return Chunk("ADVERB", at, at + 1, "back")

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
+from deixis.grammar.english.chunking.noun_positions import is_known
+from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, NEGATIONS, PRONOUNS
+from deixis.grammar.english.vocabulary.nouns import EVENTS, PEOPLE, last_word
 from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -42,6 +45,7 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + (1 if norm == "unlike" else 2), "instead")
         stands = norm == "that" and self._verbs.get(after) is not None and self._verbs[after].kind == "posture"
         ends = self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";") or stands
+        ends = ends or after in IS_FORMS or after in ("you", "we", "i", "there")
         if norm == "that" and previous == "PREP" and ends:
             return Chunk("NP", at, at + 1, NounPhrase((self.words[at].start, self.words[at].end), pronoun="this"))
         if (
@@ -49,10 +53,13 @@ class JointChunker(VerbChunker):
             and any(c.type == "PUT" and c.value.lemma == "keep" for c in self.chunks)
         ):  # fmt: skip
             return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
+        if norm in ("before", "after") and self._is_event(at + 1):
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'before your first shift'
         excepts = (norm, after) in (("apart", "from"), ("aside", "from")) and previous in ("", "COMMA", "CUT")
         if excepts:
             return Chunk("PREP", at, at + 2, Relator(Preposition("apart from", "-")))  # 'apart from the lid, …'
-        if norm == "by" and self._is_name(at + 1):
+        agent = after in ("a", "an") and self.norms[at + 2] in PEOPLE and previous == "NP"
+        if norm == "by" and (agent or self._is_name(at + 1)):
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'a seascape by Turner'
         form = self._verbs.get(self.norms[at + 2])
         if (norm, after) == ("far", "from") and form is not None and form.form == "ing":
@@ -112,6 +119,11 @@ class JointChunker(VerbChunker):
             )
         ):
             return Chunk("PREP", at, at + 1, Relator(Preposition("as", "as")))
+        if norm == "than" and after in ("i", "you", "we", "he", "she", "usual", "expected", "necessary", "one"):
+            stops = (k for k in range(at + 2, len(self.words)) if self.norms[k] in CLAUSE_ENDS | {"and", "but"})
+            end = next(stops, len(self.words))
+            if after in ("usual", "expected", "necessary") or any(norm in MODALS for norm in self.norms[at + 2 : end]):
+                return Chunk("ADVERB", at, end, "than")  # 'closer to it than I'd like'
         if norm == "than":
             return Chunk("THAN", at, at + 1)
         form = self._verbs.get(after)
@@ -155,6 +167,11 @@ class JointChunker(VerbChunker):
             return None  # 'stood so close to it'
         if norm == "otherwise" and previous == "SUB":
             return Chunk("ADVERB", at, at + 1, norm)  # 'because otherwise it falls'
+        if norm in ("whoever", "whomever") and previous == "PREP" and after in self._verbs:
+            span = self.words[at].start, self.words[at + 1].end
+            return Chunk("NP", at, at + 2, NounPhrase(span, pronoun="someone"))  # 'in front of whoever leads'
+        if norm in ("whatever", "whichever") and not previous and "," in self.norms[at + 2 : at + 8]:
+            return Chunk("SUB", at, at + 1, norm)  # 'whatever she says, the box is under the chair'
         if norm in _WHOEVER:
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
@@ -167,6 +184,11 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + 1, norm)
         return None
 
+    def _is_event(self, at: int) -> bool:
+        """Return True for a noun phrase that names an event: *your first shift*."""
+        found = self.nouns.phrase(at, "PREP") if self.nouns.starts(at) else None
+        return found is not None and found[1] is not None and last_word(found[1].head) in EVENTS
+
     def _clause_follows(self, at: int) -> bool:
         """Return True if a noun phrase with a verb after it begins here: *before the guests enter*."""
         found = self.nouns.phrase(at, "SUB") if self.nouns.starts(at) else None
@@ -174,6 +196,12 @@ class JointChunker(VerbChunker):
             return False
         norm = self.norms[found[0]]
         form = self._verbs.get(norm)
+        phrase, last = found[1], self.norms[found[0] - 1]
+        unknown = last.endswith("s") and not last.endswith("ss") and found[0] - at > 2 and norm in CLAUSE_ENDS
+        if unknown and phrase.plural and phrase.determiner == "the" and not self.nouns.is_known_noun(last):
+            inner = self.norms[found[0] - 2]
+            if self.nouns.is_known_noun(inner) and not is_adjective(inner) and not is_known(last):
+                return True  # 'before the water boils'
         return (
             norm in IS_FORMS
             or norm in MODALS

@@ -19,6 +19,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     IS_FORMS,
     MODALS,
     NEGATIONS,
+    PRONOUNS,
 )
 from deixis.grammar.english.vocabulary.idioms import IDIOMS
 from deixis.grammar.english.vocabulary.nouns import PARTS
@@ -49,6 +50,8 @@ class FixedPhraseChunker(JointChunker):
         needs_to = _CAUSATIVES.get(self.norms[at])
         if needs_to is None or self._previous() not in JOINT_TYPES | {"", "ADVERB"} or not self.nouns.starts(at + 1):
             return None
+        if self.norms[at + 1] == "no":
+            return None  # 'erasers, by the way, have no place on it'
         for i in range(at + 2, min(at + 7, len(self.words))):
             form = self._verbs.get(self.norms[i])
             if form is not None and form.form == "base" and form.kind in ("posture", "lean", "face", "point", "other"):
@@ -67,6 +70,9 @@ class FixedPhraseChunker(JointChunker):
         if self.norms[at : at + 3] == ["do", "not", "you"]:  # 'don't you ever put it there'
             self._denied = "must"
             return at + 3 + (self.norms[at + 3] in ("ever", "dare", "go"))
+        if self.norms[at] == "nor" and self.norms[at + 1] in MODALS and self.nouns.starts(at + 2):
+            self._denied = MODALS[self.norms[at + 1]]
+            return at + 2  # 'nor may they stand on it'
         for phrase in (*_DENIALS, *self._denied_circumstances(at)):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase:
@@ -94,6 +100,9 @@ class FixedPhraseChunker(JointChunker):
         norm = self.norms[at]
         previous_joint = self._previous() in ("", "COMMA", "AND", "BUT", "CUT", "ADVERB")
         related = self._relations.longest(self.norms, at)
+        able = norm == "as" and self.norms[at + 1] in PRONOUNS and self.norms[at + 2] in ("can", "could", "may", "will")
+        if able and self.norms[at + 4] in CLAUSE_ENDS and self.norms[at + 3].isalpha():
+            return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
             longer = related is not None and related[0] > end  # 'out of reach of the cat'

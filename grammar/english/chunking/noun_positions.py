@@ -195,11 +195,13 @@ class NounFinder:
         name = at > 0 and self.words[at - 1].text == "I"  # the pronoun has 'I'm'
         if (
             at == 0
-            or (not name and self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in ("one", "other", "another"))
+            or (not name and self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in _OWNERS)
             or (self.norms[at - 1] in ("there", "here", "where", "what", "who", "how"))
         ):
             return False
         after = self.norms[at + 1]
+        if after in ("far", "near", "opposite", "inside", "outside") and self.adjective_before_noun(at + 1):
+            return self.norms[at + 2] in PLACE_NOUNS  # 'along the tray's far edge'
         if after in self._closed or after in ("", ",", "."):
             return False
         if after in ("right", "left") and self.norms[at + 2] in _AFTER_SIDE:
@@ -234,7 +236,7 @@ class NounFinder:
         if not norm or at >= len(self.words):
             return False
         if norm in PRONOUNS or norm in DETERMINERS or norm in POSSESSIVES:
-            if norm == "that" and self.norms[at + 1] in (*IS_FORMS, ",", ".", "and"):
+            if norm == "that" and self.norms[at + 1] in (*IS_FORMS, ",", ".", "and", "you", "we", "i", "there"):
                 return True
             return (
                 norm not in ("that", "which", "who")
@@ -346,6 +348,9 @@ class NounFinder:
         before = self.norms[back] if at else ""
         after = self.norms[at + 1]
         form = self._verbs.get(norm)
+        stands = form is not None and form.form in ("s", "base") and form.kind in ("posture", "lean")
+        if back < at - 1 and before in ("which", "who", "that") and stands and self._predicate_follows(at):
+            return False  # 'which now lies on it'
         if before == "please" and (form is None or form.form == "base") and norm.isalpha():
             return False
         after_determiner = (
@@ -360,6 +365,8 @@ class NounFinder:
             if norm == "can" and before[:1].isalpha() and before not in self._closed and not is_adjective(before):
                 follows = self._verbs.get(after)
                 goes = follows is not None and follows.form == "base"
+                if before in PEOPLE and self.norms[at + 2] in prepositions():
+                    return False  # 'your baby can nap in it'
                 if goes and (self._nouns.singular(before)[1] or self._predicate_follows(at + 1)):
                     return False  # 'the candles can stay', 'the lid can stand on it'
             return norm == "can" and not (after in ("be", "not", "see", "have", "you", "also") or before in PRONOUNS)
@@ -439,7 +446,7 @@ class NounFinder:
             return False  # 'Ann and Tom kneel beside it'
         accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
         if accompanied and form.form == "s" and self._nouns.singular(norm)[1]:
-            return True  # 'with the cotton rolls behind it'
+            return not (spatial and self._awaits_verb(at - 3))  # 'with the cotton rolls behind it'
         first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
             first > 1 and not self.is_determiner(at - 1) and form.form == "base"
@@ -466,6 +473,14 @@ class NounFinder:
             return False
         if form.form == "s" and before == "," and self.is_determiner(at + 1):
             return False
+        second = form.form == "s" and before == "and" and form.kind in ("other", "transitive", "face")
+        second = second and not self._nouns.knows(norm) and not self._lists_plurals(back - 1)
+        if second and (self.number(at + 1) is not None or self.is_determiner(at + 1)):
+            return False  # 'sets a boat on it and takes three crates'
+        handled = self._verbs.get(before)
+        holds = handled is not None and handled.kind == "transitive" and handled.form == "base"
+        if form.form == "s" and holds and not after_determiner and self._nouns.singular(norm)[1]:
+            return not self.is_determiner(at + 1) and not self._predicate_follows(at)  # 'they hold nails and screws'
         if (
             form.form == "s"
             and before in (",", "and")
@@ -505,6 +520,8 @@ class NounFinder:
                 return after in self._verbs and self._verbs[after].form == "s" and after != "'s"
             owns = after in POSSESSIVES and after != "whose"
             return not plural and not (after in DETERMINERS or after in NUMBERS or owns)
+        if before == "never" and form.form == "base" and self._predicate_follows(at):
+            return False  # 'bottles never stand on the towel'
         if at == 0 or before in ("never", "always", "not", ",", "and", "then", ".", ";", ":", "please"):
             if form.form == "s" and before in ("never", "always") and self.is_determiner(at + 1):
                 return False
@@ -786,6 +803,21 @@ class NounFinder:
             return self._nounish(at + 1) and norm in _ADJECTIVE_NOUNS
         return self.is_noun(at)
 
+    def _awaits_verb(self, at: int) -> bool:
+        """Return True if the clause has no verb before a place: *the envelope with the card stands between them*."""
+        while at > 0 and self.norms[at - 1] not in _CLAUSE_ENDS | {"and", "but"}:
+            at -= 1
+            form = self._verbs.get(self.norms[at])
+            if self.norms[at] in IS_FORMS or (form is not None and not self.is_noun(at)) or self.norms[at] in MODALS:
+                return False
+        rest = self.norms[at:]
+        end = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
+        return IS_FORMS.isdisjoint(rest[:end])
+
+    def _lists_plurals(self, at: int) -> bool:
+        """Return True for a bare plural before *and*, as in a list of things."""
+        return at > 0 and self._nouns.singular(self.norms[at])[1] and not self.is_determiner(at - 1)
+
     def _counted(self, at: int) -> bool:
         """Return True if a number above one stands before the nouns that begin here, or before their adjectives."""
         while at > 0 and is_adjective(self.norms[at - 1]):
@@ -795,6 +827,11 @@ class NounFinder:
     def _span(self, at: int, end: int) -> Span:
         return self.words[at].start, self.words[end - 1].end
 
+
+_ANYBODY = frozenset(f"{quantity}{person}" for quantity in ("every", "some", "any", "no") for person in ("one", "body"))
+
+_OWNERS = _ANYBODY | {"one", "other", "another", "else"}
+"""Pronouns that own by *'s*: *within everyone's reach*."""
 
 GENERIC_NOUNS = frozenset({"object", "objects", "agent", "agents", "thing", "item", "dot"})
 
@@ -822,7 +859,7 @@ _LATIN_PLURALS = ("ae", "i", "a")
 _NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
 
 _PLURALS_LIKE_VERBS = word_set(
-    "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape tip point"
+    "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape tip point press"
 )
 """Verbs whose third person is more often the plural of a thing: *cups here, sandwiches there*."""
 

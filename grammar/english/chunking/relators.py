@@ -114,6 +114,8 @@ class RelatorChunker:
         if self.norms[i] == "as" and self.norms[i + 1] in ("close", "far", "near"):
             adverbs.append("as")
             i += 1
+        if self.norms[i] == "already" and self._match(i + 1) is not None:
+            i += 1  # 'the silk is already inside the hat'
         while (self.norms[i] in DEGREE_ADVERBS or self.norms[i] in HEDGES or self.norms[i] == "the") and i - at < 4:
             if self._relations.by_first.get(self.norms[i]) and self._match(i) is not None:
                 break

@@ -31,6 +31,10 @@ PUT_ONLY = word_set(
 )
 
 
+_FALLING_OVER = frozenset({"fall", "topple", "tip", "knock", "keel"})
+"""Verbs of which *over* is a part."""
+
+
 def _with(group: VerbGroup, lemma: str, kind: str, form: str, past: bool | None = None) -> VerbGroup:
     return VerbGroup(
         lemma, kind, form, group.modal, group.positive, group.past if past is None else past, group.adverbs
@@ -50,7 +54,7 @@ class VerbChunker(RelatorChunker):
             if form is not None and spatial and last is not None and last.modal:
                 group = VerbGroup(form.lemma, form.kind, "base", last.modal, positive=False)
                 return self._finite(at, at + 2, group)  # 'it must hang on the rail and not lie on the table'
-        if self._previous() == "AND" and (shared := self._second_verb(at)) is not None:
+        if self._previous() in ("AND", "OR") and (shared := self._second_verb(at)) is not None:
             return shared
         i, adverbs, modal, positive, past = at, [], None, True, False
         begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
@@ -239,6 +243,8 @@ class VerbChunker(RelatorChunker):
             )
             if alone and i == at and norm.endswith("s") and len(norm) > 3 and norm.isalpha() and norm not in PRONOUNS:
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
+            if i == at and self._goes_on_with(at):
+                return Chunk("TVERB", at, i + 1, _with(group, norm, "unknown", "s"))
             if self._previous() == "NP" and i == at and self.nouns.ends_as_verb(at):
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
             return self._unknown_participle(at, i, group)
@@ -248,6 +254,8 @@ class VerbChunker(RelatorChunker):
         apart = self.norms[end] in PARTICLES and (self.norms[end] != "over" or form.lemma in _TURNING_OVER)
         if form.kind == "posture" and apart and self.nouns.is_determiner(end + 1):
             end += group.past or self.norms[i - 1] in ("have", "has", "had", "'ve")
+        if form.lemma in _FALLING_OVER and self.norms[end] == "over" and not self.nouns.starts(end + 1):
+            end += 1  # 'it has fallen over'
         phrasal = _PHRASAL.get((form.lemma, self.norms[end]))
         if phrasal is not None:
             found, end = _with(group, *phrasal, form.form), end + 1
@@ -285,6 +293,8 @@ class VerbChunker(RelatorChunker):
             and self._previous() in JOINT_TYPES | {"", "ADVERB"}
         ):
             return Chunk("DO", at, end + 1, found)
+        if norm == "lay" and self.norms[end] == "out" and self._only_places() and self.nouns.starts(end + 1):
+            return Chunk("PUT", at, end + 1, _with(group, "lay", "posture", "base"))  # 'right of it lay out the probes'
         if norm == "lay" and self._previous() == "NP" and self.norms[at - 1] in ("you", "we"):
             return self._finite(at, end, _with(group, "lay", "posture", "base"))  # 'then you lay the spoon beside it'
         if norm in PAST_ONLY and not (norm == "saw" and self.nouns.is_noun(i)):
@@ -312,6 +322,12 @@ class VerbChunker(RelatorChunker):
             and self.norms[at - 1] == "it"
         ):
             return self._finite(at, end, replace(found, past=True))  # 'it contained a tin'
+        placed = self.norms[end] in ("on", "in", "into", "against", "between")
+        if norm == "set" and self._previous() == "COMMA" and placed:
+            return Chunk("PART", at, end, _with(group, "set", "posture", "participle"))  # 'the jug, set on its tile'
+        ones = self.norms[end] in ("one", "ones") and form.form in ("past", "participle")
+        if ones and self._previous() in JOINT_TYPES | {"", "PREP"}:
+            return None  # 'and used ones go into the box'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
@@ -358,7 +374,8 @@ class VerbChunker(RelatorChunker):
             imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
-            if subject == "COMMA" and self._awaits_verb() and self._predicate_after(i):
+            owns = norm == "have" and self.norms[end] == "no"
+            if subject == "COMMA" and self._awaits_verb() and (owns or self._predicate_after(i)):
                 return self._finite(at, end, found)  # 'the tweezers, points to the left, lie along the edge'
             crosses = (
                 self.norms[end] in ("over", "across", "round", "around", "on", "along") and self.norms[end + 1] == "to"
@@ -373,6 +390,8 @@ class VerbChunker(RelatorChunker):
                 return Chunk("GO", at, end, found)
             if imperative and not subject_is_you and norm in NAMED_LIKE_THINGS and not self.nouns.commands(i):
                 return None
+            if imperative and self._inverted_in_statement(i, end):
+                return Chunk("VERB", at, end, found)  # 'it is on the left, and behind it stand the lilies'
             if imperative and (norm in PUT_VERBS or norm in FIND_VERBS) and self._imperative_object(end):
                 kind = "FIND" if norm in FIND_VERBS else "PUT"
                 if norm in ("pick", "point", "look", "single", "search") and self.norms[end] in (
@@ -409,6 +428,22 @@ class VerbChunker(RelatorChunker):
         if self.nouns.is_noun(i) and self._previous() not in ("NP", "REL"):  # third person
             return None
         return self._finite(at, end, found)
+
+    def _inverted_in_statement(self, at: int, end: int) -> bool:
+        """Return True for *stand* after a place and before a plural, in a sentence of statements about things."""
+        last = next((c for c in reversed(self.chunks) if c.type in FINITE | {"PUT", "CUT", "DO"}), None)
+        told = last is not None and last.type in FINITE and self.norms[at] in ("stand", "hang", "rest", "lean", "sit")
+        found = self.nouns.phrase(end, "VERB") if told and self._only_places() and self.nouns.starts(end) else None
+        return found is not None and found[1] is not None and found[1].plural and bool(found[1].head)
+
+    def _goes_on_with(self, at: int) -> bool:
+        """Return True for an unknown verb after *and* with its object: *each sets a boat on it and takes a crate*."""
+        norm, last = self.norms[at], next((c for c in reversed(self.chunks) if c.type in FINITE | {"CUT"}), None)
+        if self._previous() != "AND" or last is None or last.type == "CUT" or last.value.form != "s":
+            return False
+        known = self.nouns.is_known_noun(norm) or self.nouns.is_determiner(at) or norm in PRONOUNS
+        known = known or not norm.endswith("s") or norm.endswith("ss") or not norm.isalpha()
+        return not known and (self.nouns.is_determiner(at + 1) or self.nouns.number(at + 1) is not None)
 
     def _tried(self, at: int, i: int, group: VerbGroup) -> Chunk | None:
         """Return the verb of a word that is tried as one: a command where a clause begins, and finite elsewhere."""

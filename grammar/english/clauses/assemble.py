@@ -20,6 +20,8 @@ from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _REFERS_BACK = re.compile(r"\b(?:it|them|they|these|those)\b", re.IGNORECASE)
 """Pronouns that can stand for a thing of a condition."""
+_OWN = re.compile(r"\b(?:his|her)\b", re.IGNORECASE)
+"""Owner of a part of the body: *he has a chip on his shoulder*."""
 _FRAMES = frozenset({"facing", "from"})
 _PLACING = frozenset(
     {
@@ -182,6 +184,8 @@ class Assembly:
             return
         if link == "until" and self.clauses and not self.clauses[-1].past:
             return  # it holds now
+        if link in ("whatever", "whichever"):
+            return  # it holds in any case
         if link == "in case" and self.clauses:
             return  # a reason: 'a copy is in the box in case the first is lost'
         if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever", "in case") and (
@@ -240,7 +244,8 @@ class Assembly:
             v.group.lemma in _GETTING or (v.group.lemma in _MEETING and v.group.positive and (said or v.said))
             for v in verbs
         )
-        person = subject.phrase.pronoun in _PEOPLE or people
+        own = subject.phrase.pronoun in ("he", "she") and not _OWN.search(self.text, *span)
+        person = subject.phrase.pronoun in _PEOPLE or own or people
         known = len(self.clauses)
         held = verbs[-1].thing if verbs[-1].group.lemma in _BEARING else None
         self.borne = held.phrase if held is not None and held.phrase.head else None
@@ -296,6 +301,11 @@ class Assembly:
                 self._clause(shape, thing, moved, front, span, mood, hedge, link)
                 continue
             self._clause(built.shape, subject, verb, front, span, mood, hedge, link if i == 0 else "and")
+        objects = [v.thing.phrase for v in verbs if v.thing is not None and v.thing.phrase.head]
+        acting = built.shape == "statement" and subject.phrase.pronoun in ("me", "we", "you")
+        if acting and objects and len(self.clauses) == known:  # 'we use a lamp, and it hangs over the bar'
+            made = replace(objects[-1], predicates=())
+            self._append(Clause(made, (), span, Mood.COMMAND, step=self.raw.step), link)
         told = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
         self.is_lost = told and len(self.clauses) == known
 

@@ -8,6 +8,7 @@ from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk
 from deixis.grammar.english.clauses.editing import cut, end_before, type_at
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.nouns import PARTS
 from deixis.grammar.english.vocabulary.tables import word_set
 
 _LOOKING = word_set("look peek peep peer search check open lift")
@@ -32,6 +33,7 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
+        _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after,
         _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
@@ -39,9 +41,133 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
     return chunks
 
 
+def with_pairs_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *A and B go in the first and the second drawer* as one clause for each thing and its place.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence in the order of the text.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks in which the verb is repeated for each pair, if the places are numbered or *respectively* follows.
+    """
+    for i, chunk in enumerate(chunks):
+        if type_at(chunks, i - 1) not in JOINT_TYPES | {"", "PUT"} or chunk.type != "NP":
+            continue
+        things, end = _listed(chunks, i)
+        placed = type_at(chunks, i - 1) == "PUT"
+        verb = end
+        while type_at(chunks, end) in FINITE | {"PART"}:
+            end += 1
+        if len(things) < 2 or type_at(chunks, end) != "PREP" or (placed is (end > verb)):
+            continue
+        places, after = _listed(chunks, end + 1)
+        rest = end_before(chunks, after, JOINT_TYPES - {"COMMA"})
+        told = [k for k in range(after, rest) if _is_respective(chunks[k])]
+        ordered = all(place.value.adjectives and place.value.adjectives[0].rank for place in places)
+        if len(places) != len(things) or not (told or ordered) or not places[-1].value.head:
+            continue
+        of = [c for c in chunks[after : told[0] if told else rest] if c.type != "COMMA"]
+        begin, found = (i - 1 if placed else i), list(chunks[: i - 1 if placed else i])
+        for thing, place in zip(things, places, strict=True):
+            value = place.value if place.value.head else replace(place.value, head=places[-1].value.head)
+            here = replace(place, value=replace(value, determiner=value.determiner or "the"))
+            found += [*chunks[begin:i], thing, *chunks[verb:end], chunks[end], here, *of, cut(place)]
+        return [*found, *with_pairs_apart(chunks[rest:])]
+    return chunks
+
+
+def _listed(chunks: list[Chunk], at: int) -> tuple[list[Chunk], int]:
+    """Return the noun phrases of a list with *and* before the last, and the place after it."""
+    found, joined, i = [], False, at
+    while type_at(chunks, i) == "NP":
+        found.append(chunks[i])
+        i += 1
+        if joined or type_at(chunks, i) not in ("COMMA", "AND"):
+            break
+        joined = "AND" in (type_at(chunks, i), type_at(chunks, i + 1))
+        i += 1 + (type_at(chunks, i + 1) == "AND" and type_at(chunks, i) == "COMMA")
+    return (found, i) if joined else ([], at)
+
+
+def _without_one_of_each_side(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *two lamps, one either side of it* as *two lamps either side of it*."""
+    for i in range(1, len(chunks)):
+        types = [type_at(chunks, i + k) for k in range(-1, 3)]
+        one = types == ["NP", "COMMA", "NP", "PREP"] and chunks[i + 1].value.pronoun == "one"
+        if one and chunks[i + 2].value.preposition.relation == "each_side" and chunks[i - 1].value.plural:
+            return [*chunks[:i], *_without_one_of_each_side(chunks[i + 2 :])]
+    return chunks
+
+
+def _with_own_parts_after(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the bucket, tongs hooked over its rim, is in front* with the aside at the end of the clause."""
+    for i in range(1, len(chunks)):
+        types = [type_at(chunks, i + k) for k in range(-1, 6)]
+        aside = types[:3] == ["NP", "COMMA", "NP"] and types[3] in ("PART", "PREP") and types[0] not in JOINT_TYPES
+        part = types[:5] == ["NP", "COMMA", "NP", "ADV", "COMMA"] and chunks[i + 1].value.determiner is None
+        if part and chunks[i + 1].value.head in PARTS and type_at(chunks, i + 4) == "PREP":
+            rest = end_before(chunks, i + 4, JOINT_TYPES)  # 'top hat, brim up, in the middle of the table'
+            return [*chunks[:i], *chunks[i + 4 : rest], chunks[i], *chunks[i + 1 : i + 3], *chunks[rest:]]
+        end = i + 3 + (types[3] == "PART" and types[4] == "PREP")
+        own = aside and type_at(chunks, end) == "NP" and type_at(chunks, end + 1) == "COMMA"
+        if not own or type_at(chunks, i - 2) not in JOINT_TYPES | {""} or chunks[i + 1].value.head == "":
+            continue
+        owner = chunks[end].value.owner
+        if owner is None or owner.pronoun not in ("it", "they") or type_at(chunks, end + 2) not in FINITE | {"PREP"}:
+            continue
+        rest = end_before(chunks, end + 2, JOINT_TYPES)
+        return [*chunks[:i], *chunks[end + 2 : rest], cut(chunks[i]), *chunks[i + 1 : end + 1], *chunks[rest:]]
+    return chunks
+
+
+def _without_ends_of_the_past(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the radio, which stood on it until it hummed, is …* without the clause of *until*."""
+    for i, chunk in enumerate(chunks):
+        until = chunk.type == "SUB" and chunk.value == "until" and "REL" in [c.type for c in chunks[:i]]
+        end = end_before(chunks, i + 1, frozenset({"COMMA", "CUT"}))
+        if until and type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in FINITE:
+            return [*chunks[:i], *chunks[end:]]
+    return chunks
+
+
+def _with_denied_predicates(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the pens are in the box; the ruler isn't* with what the ruler is denied."""
+    for i in range(4, len(chunks)):
+        verb = chunks[i]
+        denies = verb.type in FINITE and verb.value.lemma in ("do", "be") and not verb.value.positive
+        bare = denies and verb.value.modal is None and type_at(chunks, i + 1) in JOINT_TYPES | {""}
+        if not bare or type_at(chunks, i - 1) != "NP" or type_at(chunks, i - 2) not in JOINT_TYPES:
+            continue
+        first = max((k + 1 for k in range(i - 2) if chunks[k].type in JOINT_TYPES), default=0)
+        types = [c.type for c in chunks[first : i - 2]]
+        if types[:3] in (["NP", "VERB", "PREP"], ["NP", "BE", "PREP"]) and chunks[first + 1].value.positive:
+            told = replace(chunks[first + 1], value=replace(chunks[first + 1].value, positive=False))
+            said = [told, *chunks[first + 2 : i - 2]]
+            return [*chunks[:i], *said, cut(verb), *_with_denied_predicates(chunks[i + 1 :])]
+    return chunks
+
+
+def _is_respective(chunk: Chunk) -> bool:
+    """Return True for *respectively* and *in that order*."""
+    adverb = chunk.type == "ADVERB" and chunk.value in ("in that order", "in this order", "in order")
+    return adverb or (chunk.type == "ADV" and chunk.value.preposition.phrase == "respectively")
+
+
 def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *there stands a clock in the corner* as *there is a clock in the corner*."""
+    """Return *there stands a clock in the corner* and *first comes a clock …* as *there is a clock in the corner*."""
     found = list(chunks)
+    begins = type_at(found, 0) == "ADVERB" or (
+        type_at(found, 0) == "NP" and not found[0].value.head and any(a.rank for a in found[0].value.adjectives)
+    )
+    comes = begins and type_at(found, 1) == "VERB" and found[1].value.lemma in ("come", "go", "follow")
+    if comes and type_at(found, 2) == "NP" and found[2].value.determiner in ("a", "an", None):
+        verb = found[1]
+        be = Chunk("BE", verb.start, verb.end, replace(verb.value, lemma="be", kind="be"), verb.span)
+        found[:2] = [replace(found[0], type="THERE", value=None), be]
     for i in range(1, len(found)):
         verb = found[i]
         if found[i - 1].type == "THERE" and verb.type in ("VERB", "TVERB", "PUT") and verb.value.kind == "posture":
@@ -161,6 +287,18 @@ def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
     """Return *all but one clause* as two: *all spoons are in it except the ladle, which is in the sink*."""
     for i, chunk in enumerate(chunks):
         excepts = chunk.type == "PREP" and chunk.value.preposition.phrase in ("except", "except for", "besides")
+        bare = excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in JOINT_TYPES | {""}
+        first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
+        nothing = type_at(chunks, first) == "NP" and chunks[first].value.pronoun == "nothing"
+        if bare and nothing and type_at(chunks, first + 1) in FINITE and chunks[first + 1].value.modal is None:
+            told = [c for c in chunks[first + 1 : i] if c.type != "ADVERB"]  # 'nothing is on it except the clock'
+            thing, rest = chunks[i + 1], chunks[i + 2 :]
+            if [type_at(rest, k) for k in (0, 1)] == ["COMMA", "REL"]:
+                rest = [cut(rest[0]), replace(thing), *rest[2:]]  # '…, which must be 1 m from the wall'
+            return [*chunks[:i], cut(chunk), thing, *told, *_with_exceptions(rest)]
+        if excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in ("BE", "PART", "TPART", "ADJP"):
+            end = end_before(chunks, i + 2, JOINT_TYPES)  # 'all bottles except the one being poured'
+            return [*chunks[:i], *_with_exceptions(chunks[end:])]
         if excepts and [type_at(chunks, i + k) for k in (1, 2, 3)] == ["NP", "COMMA", "REL"]:
             return [*chunks[:i], cut(chunk), chunks[i + 1], *_with_exceptions(chunks[i + 3 :])]
     return chunks

@@ -381,7 +381,7 @@ def _inversion_follows(types: list[str], at: int) -> bool:
             if following in ("NP", "THERE"):
                 return True
             if following == "COMMA" and i + 2 < len(types) and types[i + 2] == "NP":
-                return True
+                return not _has_own_place(types, i + 2)
         if kind == "ADV" and i + 1 < len(types) and types[i + 1] in ("NP", "THERE"):
             return True
         if kind in JOINT_TYPES and not (kind in ("AND", "COMMA") and i > at and types[i + 1 : i + 2] == ["NP"]):
@@ -390,6 +390,12 @@ def _inversion_follows(types: list[str], at: int) -> bool:
             return False
         i += 1
     return False
+
+
+def _has_own_place(types: list[str], at: int) -> bool:
+    """Return True for a thing with its place and no verb to the end: *at the end of it, the safe underneath it*."""
+    rest = types[at : next((k for k in range(at, len(types)) if types[k] in ("CUT", "COLON")), len(types))]
+    return rest[:3] == ["NP", "PREP", "NP"] and not (FINITE | {"REL", "COMMA", "AND"}) & set(rest)
 
 
 _OF_PLACES = frozenset(

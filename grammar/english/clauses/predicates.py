@@ -522,8 +522,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
     elif relation == "next_to" and lemma in _ATTACHING:
         relation = "touching"  # 'clipped to the side of the jug'
-    elif lemma in ("align", "line") and relation in ("with",):
+    elif lemma == "align" and relation == "with":
         relation = "aligned"
+    elif lemma == "line" and relation == "with":
+        relation = "aligned" if "up" in (*marker.adverbs, *following.adverbs) else "through"  # 'lined with felt'
     elif lemma in _FINISHING and relation in ("inside", "on", "with"):
         relation = "through"  # 'bound in calfskin'
     elif lemma in _TELLING and relation in ("inside", "on", "at"):

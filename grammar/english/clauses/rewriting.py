@@ -25,6 +25,7 @@ from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Prepos
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
 
+_SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
 _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
 _BREAKS = frozenset({"COMMA", "CUT", "BUT"})
@@ -83,6 +84,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
         _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
         _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
@@ -233,6 +235,9 @@ def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
     person = type_at(chunks, at + 1) == "NP" and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
     helped = person and type_at(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"}
     types = [chunk.type for chunk in chunks[max(0, at - 2) : at + 3]]
+    purpose = types == ["BE", "NP", "PREP", "NP", "PREP"] and chunks[at + 1].value.determiner is None
+    if purpose and chunks[at + 1].value.owner is None and type_at(chunks, at - 3) == "THERE":
+        return at + 2, None  # 'there is a tray for mail on the cabinet'
     return (at + 2, None) if helped or types == ["PUT", "NP", "PREP", "NP", "PREP"] else None
 
 
@@ -243,6 +248,12 @@ def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
         and type_at(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
         and chunks[at + 3].value.head in PLACE_NOUNS
     )  # fmt: skip
+    nearby = (
+        [type_at(chunks, at + k) for k in range(4)] == ["COMMA", "ADJP", "PREP", "NP"]
+        and type_at(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
+        and chunks[at + 1].value[-1].dimension in ("size", "length", "height", "width", "thickness")
+    )  # 'a rack of tubes, longest at the wall'  # fmt: skip
+    apart = apart or nearby
     nearest = (
         [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "NP"] and type_at(chunks, at + 3) in _ENDS
         and chunks[at + 1].value[-1].word in ("near", "far") and len(chunks[at + 1].value) > 1
@@ -311,6 +322,31 @@ def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
     denied = chunks[at + 1].value.determiner == "no"  # 'phones have no place on the stand'
     group = replace(chunk.value, lemma="be", kind="be", positive=chunk.value.positive is not denied)
     return end, Chunk("BE", chunk.start, chunk.end, group, chunk.span)
+
+
+def _turn(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the turn of a thing in a list of steps: *towel first: fold it*, *the guest first: a beaker …*."""
+    turn = at == 1 and [type_at(chunks, k) for k in range(3)] == ["NP", "NP", "COLON"]
+    ranked = turn and not chunks[at].value.head and chunks[at].value.determiner is None
+    return (at + 1, None) if ranked and any(a.rank for a in chunks[at].value.adjectives) else None
+
+
+def _posture_of_the_person(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find how the person is who has things somewhere: *sitting at the desk I have the lamp on my left*."""
+    sits = at == 0 and chunks[0].type == "PART" and chunks[0].value.form == "ing" and chunks[0].value.kind == "posture"
+    end = end_before(chunks, 1, frozenset({"NP"}))
+    while type_at(chunks, end) == "NP" and type_at(chunks, end + 1) in ("OF", "PREP"):
+        end += 2
+    after = end + 1 + (type_at(chunks, end + 1) == "COMMA")
+    person = type_at(chunks, after) == "NP" and chunks[after].value.pronoun in PERSONS and not chunks[after].value.head
+    return (after, None) if sits and person and type_at(chunks, 1) == "PREP" else None
+
+
+def _comparison_of_size(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what a thing is compared with: *a globe the size of a pumpkin*."""
+    compared = [type_at(chunks, at + k) for k in (-1, 0, 1, 2)] == ["NP", "NP", "OF", "NP"]
+    sized = compared and chunks[at].value.determiner == "the" and chunks[at].value.head in _SIZES
+    return (at + 3, None) if sized else None
 
 
 def _count_apart(chunks: list[Chunk], at: int) -> _Run | None:

@@ -142,7 +142,7 @@ FRAMED = re.compile(
 """Beginning of a sentence that tells of another world than the one on the table: *in theory*, *the moment it is …*."""
 SELDOM = re.compile(
     r"(?:\bnot|n['\u2019]t)\s+(?:always|usually|normally|generally|often|necessarily|every\s+day|all\s+the\s+time)\b|"
-    r"^\s*(?:very\s+)?few\s",
+    r"^\s*(?:very\s+)?few\s|\bexcepted\b",
     re.IGNORECASE,
 )
 """Words by which something is so at times, or of some things."""
@@ -186,6 +186,12 @@ LIMITED = re.compile(
     re.IGNORECASE,
 )
 """Time outside which a statement need not hold."""
+EVENT = re.compile(
+    r"\W*(?:in\s+an?\s+(?:[\w-]+\s+){0,2}(?:game|match|emergency|crisis|storm|drill|power\s+cut|heatwave)\b"
+    r"|in\s+(?:the\s+event|case)\s+of\s+[^,.;]*)",
+    re.IGNORECASE,
+)
+"""Beginning of a sentence that tells what is so in an event alone: *in an emergency*, *in the event of rain*."""
 ELSEWHERE = re.compile(
     r"\s*at\s+(?:my|our|your|his|her|their|the)\s+(?!own\b)[\w-]+(?:['\u2019]s|s['\u2019])\b[^,.;]*,", re.IGNORECASE
 )

@@ -10,6 +10,7 @@ from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import (
     CONSEQUENCE,
     ELSEWHERE,
+    EVENT,
     FRAMED,
     FUTURE,
     HABIT,
@@ -44,6 +45,13 @@ UNCERTAIN = frozenset({"might", "may", "could", "would"})
 
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
 
+LABEL = re.compile(
+    r"\s*(?:first|second|third|next|then|last)?\s*:\s*(?P<again>(?:[\w'\u2019-]+\s+){0,3}(?:it|them|they)\b)?",
+    re.IGNORECASE,
+)
+"""Words after a label of what follows: *towel first: fold it*."""
+MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
+"""Properties that a part and its whole need not share."""
 BARE_AFTER_BE = re.compile(
     r"\b(?:is|are|was|were|be|been|remains?|perfectly|quite)\s+(?:all\s+)?$|['\u2019]s\s+$", re.IGNORECASE
 )
@@ -105,7 +113,8 @@ class Discourse(Statements):
             if predicate.relation == "row":
                 self.order = predicate.part or self.order
         listed = phrase.members or (phrase,)
-        label = self.text[phrase.span[1] :].lstrip().startswith(":") and phrase.plural and bool(phrase.head)
+        mark = LABEL.match(self.text[phrase.span[1] : self.end])
+        label = mark is not None and (phrase.plural or mark["again"] is not None) and bool(phrase.head)
         if label and phrase.determiner is None and not phrase.predicates and not self.how.uncertain:
             labelled = self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
             if labelled is not None:
@@ -173,8 +182,9 @@ class Discourse(Statements):
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
         if phrase is None or not phrase.head or phrase.determiner in ("a", "an", "no", "any"):
             return
-        if phrase.determiner is None and phrase.owner is None and not phrase.plural:
-            return
+        alone = self.text[self.references.start : self.end].strip().rstrip("?").casefold() == phrase.head
+        if phrase.determiner is None and phrase.owner is None and not phrase.plural and not alone:
+            return  # 'bread? in a basket'
         asked = self.references.find(replace(phrase, predicates=()))
         if asked is not None and asked.role is Role.THING:
             self.references.recent.insert(0, Focus(asked, [], None, self.references.sentence))
@@ -280,9 +290,8 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
-        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
-            self.text[self.references.start : self.end]
-        )
+        said = self.text[self.references.start : self.end]
+        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(said) or EVENT.match(said)
         if limit is not None and self.how.condition is None:
             self.how = replace(self.how, condition=limit[0].strip(" ,."))
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
@@ -471,6 +480,8 @@ class Discourse(Statements):
             if predicate.relation in ("left", "right") and not predicate.arguments:
                 self._add("pointing", (last,), (), value=predicate.relation)
                 continue
+            if predicate.relation in MEASURES or predicate.relation in ("colour", "material", "shape"):
+                continue  # 'the cable is too short'
             if predicate.relation == "far":
                 predicate = replace(predicate, relation="pointing", arguments=(), value=None, part="away")
             if (predicate.relation == "pointing" and any("same" in self._words(a) for a in predicate.arguments)) or (

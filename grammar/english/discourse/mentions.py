@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from dataclasses import replace
 
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import PAST_RELATIVE, UNSURE_RELATIVE
 from deixis.grammar.english.discourse.drafts import Drafting
 from deixis.grammar.english.discourse.entities import Entity, Role
@@ -13,6 +15,9 @@ from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
 from deixis.ontology.graph.claims import PLACES
+
+VERB_AFTER = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
+"""Verb after a noun phrase, without which it tells how the thing before it is: *its flap opening away from you*."""
 
 SUPERLATIVES = {
     ("size", 1): "largest", ("size", -1): "smallest", ("height", 1): "tallest", ("height", -1): "shortest",
@@ -43,7 +48,7 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
     own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
     stuff = noun in SUBSTANCES and phrase.determiner is None and phrase.owner is None  # 'in water behind the counter'
-    return (around and (bare or (wide and beside))) or flat or amid or own or stuff
+    return (around and bare) or (wide and (bare or beside)) or flat or amid or own or stuff
 
 
 COMPARTMENTS = frozenset(
@@ -188,6 +193,17 @@ class Mentions(Drafting, ABC):
         focus: bool = True,
         existential: bool = False,
     ) -> None:
+        held = [p for p in predicates if p.relation in ("with", "inside") and len(p.arguments) == 1]
+        if any(self.text[slice(*p.span)].casefold().startswith(("with", "in")) for p in held):
+            held = []  # what is with a thing, and not what it holds
+        shared = phrase is not None and phrase.determiner in ("both", "each", "every", "all")
+        if 1 < len(held) == entity.size and not shared:
+            if any(p.relation in ("row", "one_each") for p in predicates):
+                for leaf, predicate in zip(entity.leaves(), held, strict=True):
+                    self._say(leaf, (predicate,), phrase, focus=False)  # 'from left to right they hold A, B and C'
+                predicates = tuple(p for p in predicates if p not in held)
+            else:
+                self.how = self._guessed(Guess.CONTESTED)
         others: list[Entity] = []
         if focus:
             self.references.named = others
@@ -211,9 +227,17 @@ class Mentions(Drafting, ABC):
              if p.arguments and not (p.relation in ("in_front", "behind") and self._within(p.relation))), None
         )  # fmt: skip
         if focus:
-            self.references.recent.insert(0, Focus(entity, others, relation, self.how.sentence))
+            last = self.references.recent[0] if self.references.recent else None
+            here = last is not None and last.sentence == self.how.sentence and last.subject is not entity
+            own = phrase is not None and bool(phrase.head) and self._is_absolute(phrase)
+            self.references.recent.insert(int(own and here), Focus(entity, others, relation, self.how.sentence))
         else:
             self.references.recent.append(Focus(entity, others, relation, self.how.sentence))
+
+    def _is_absolute(self, phrase: NounPhrase) -> bool:
+        """Return True for a part of the thing before, of which no verb follows: *its flap opening away from you*."""
+        part = phrase.owner is not None and phrase.owner.pronoun == "it"
+        return part and VERB_AFTER.match(self.text[phrase.span[1] : self.end]) is None
 
     def _argument(self, phrase: NounPhrase, relation: str, subject: Entity | None) -> Entity | Region | None:
         if relation in ("inside", "on") and phrase.of is not None and (

@@ -16,6 +16,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PAIRED,
     PARTS,
     PEOPLE,
+    PLACES_OF,
     REMOVABLE,
     SINGLE_PLURALS,
     SURROUNDINGS,
@@ -62,6 +63,8 @@ OPPOSITES = {
     "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
     "on": "under", "under": "on", "top": "bottom", "bottom": "top",
 }  # fmt: skip
+CORNERS = frozenset({"top_left", "top_right", "bottom_left", "bottom_right"})
+"""Relations that name a corner of a thing or of the surface, where no other thing is named."""
 POLES = {
     **dict.fromkeys(("large", "big", "tall", "long", "wide", "thick", "high", "deep", "heavy", "broad"), 1),
     **dict.fromkeys(("small", "little", "short", "narrow", "thin", "low", "shallow", "light", "tiny"), -1),
@@ -206,6 +209,10 @@ class References:
             whole = self._earlier(replace(phrase, head=noun.rpartition(" ")[0], adjectives=(), determiner="the"))
             if whole is not None:
                 return Entity(last, Role.PART, whole=whole)  # 'the knife blade'
+        whose = phrase.owner or phrase.of
+        placed = whose is not None and noun in PLACES_OF and relation is None and last_word(whose.head) not in PEOPLE
+        if placed and whose is not None and whose.pronoun not in VIEWER_WORDS | {"we", "he", "she"}:
+            return self.find(whose, relation, besides)  # 'the home of the bucket is under the tap'
         if phrase.of is not None and last in GENERAL:
             counted = phrase.count is not None and phrase.of.count is None and phrase.of.determiner is None
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
@@ -512,7 +519,8 @@ class References:
         if word in ("it", "itself", "they") and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("it", "this", "that", "itself"):
-            chosen = self._singular(relation, besides)
+            pointed = self._pointed_at(phrase, relation, besides) if word == "this" else None
+            chosen = pointed or self._singular(relation, besides)
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
         if word in ("he", "she") and relation is not None:
@@ -581,6 +589,8 @@ class References:
                 for entity in self._known():
                     if _same_noun(entity.noun, noun) and any(("colour", c) in entity.adjectives for c in colours):
                         return entity
+                if noun in PEOPLE:  # 'the guests; the blue lies behind the brie'
+                    return self._new(replace(phrase, head=min(colours), adjectives=(), pronoun=None), Role.THING)
                 group = self.last_group(besides)
                 if group is None or not _same_noun(group.noun, noun):
                     entity = Entity(noun, born=self.sentence)
@@ -620,6 +630,9 @@ class References:
             bare = phrase.pronoun == "one" and phrase.determiner is None and not phrase.adjectives
             if bare and many is not None and many.plural and not phrase.predicates:
                 return many  # 'fold the napkins and tuck one under each fork'
+            kinds = phrase.pronoun == "one" and phrase.plural and bool(phrase.adjectives) and not phrase.determiner
+            if kinds and many is not None and many.plural and many.noun and many.role is Role.THING:
+                return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
             return self._another_one(phrase, besides, relation)
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
@@ -707,6 +720,18 @@ class References:
                 return entity
         return several
 
+    def _pointed_at(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
+        """Return the thing of the last clause that was named last: *it leans on the wall rail, and under that …*."""
+        last = self.recent[0] if self.recent else None
+        if last is None or last.sentence != self.sentence or last.subject is None or last.relation == relation:
+            return None  # 'A to the right of B, and to the right of that C'
+        before = self.text[self.start : phrase.span[0]].casefold()
+        things = [e for e in (last.subject, *last.others) if e.role is Role.THING and e.noun and e is not besides]
+        single = [not (e.members or e.plural) for e in things]
+        placed = [(before.rfind(last_word(e.noun)[:4]), i) for i, e in enumerate(things) if single[i]]
+        found = [place for place in placed if place[0] >= 0]
+        return things[max(found)[1]] if len(found) > 1 else None
+
     def _note_doubt(
         self, phrase: NounPhrase, chosen: Entity | None, relation: str | None, besides: Entity | None
     ) -> None:
@@ -729,6 +754,10 @@ class References:
         last = self.recent[0] if self.recent else None
         if both and last is not None and last.sentence == self.sentence and len(last.others) == 2:
             return Entity("", members=list(last.others))  # 'it has a fork and a spoon, both …'
+        before = self.recent[0].subject if self.recent and self.recent[0].sentence == self.sentence else None
+        many = before is not None and before.role is Role.THING and bool(before.itself.members or before.plural)
+        if many and relation is None and not both:
+            return before  # 'the nuts must not be next to the cereals, nor may they stand …'
         for group in reversed(self.named):
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'

@@ -8,13 +8,16 @@ from dataclasses import replace
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.mentions import Mentions
-from deixis.grammar.english.discourse.references import OPPOSITES, Region
+from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, Predicate
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, last_word
 from deixis.ontology.graph.claims import COLLECTIVE
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
+
+AT_CORNER = re.compile(r"(?:at|in|on)\s+the\s+[\w-]+\s+(?:left|right)", re.IGNORECASE)
+"""Corner as a place, and not as a direction: *at the upper left*, not *to the upper left*."""
 
 MAX_WORDS_AFTER = 3
 """Number of words between a relative clause and the pronoun that stands for its last thing."""
@@ -62,6 +65,15 @@ _MUTUAL = {"next_to": "near", "against": "touching"}
 """Relation of each to the others, by the relation to *each other*."""
 
 
+_BESIDE = frozenset({"left", "right", "in_front", "behind", "next_to", "near"})
+
+_FORMS = frozenset(
+    ["rectangle", "triangle", "square", "fan", "roll", "quarter", "third", "half", "cube", "slice", "piece", "cone",
+     "cylinder", "oval", "shape", "strip", "wedge", "ball", "pattern"]
+)  # fmt: skip
+"""Nouns of what a thing becomes by *into*: *fold it into a rectangle*."""
+
+
 def _whole(entity: Entity) -> Entity:
     """Return the thing that a part belongs to: *across the rim of the bowl* is across the bowl."""
     return entity.whole if entity.role is Role.PART and entity.whole is not None else entity
@@ -77,6 +89,10 @@ class Relations(Mentions):
             relation = f"exactly_{relation}"
         if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
+        forms = all(last_word(a.head) in _FORMS and a.determiner not in ("the", "each") for a in predicate.arguments)
+        into = self.text[slice(*predicate.span)].casefold().startswith("into")
+        if into and relation == "inside" and predicate.arguments and forms:
+            return  # 'fold it into a rectangle'
         if relation in ("at", "on") and self._at_the_other(subject, predicate):
             return
         found: list[Entity | Region] = []
@@ -112,6 +128,8 @@ class Relations(Mentions):
             if phrase.pronoun == "it" and restricted is not None and not others and near:
                 last = restricted  # 'the comb, which was in front of the mirror, is behind it'
 
+            if last is not None and relation in _BESIDE and self._holds(last, subject):
+                last = None  # 'crackers, in a bowl, to the left of it'
             if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
                 found.append(last)  # above the saucer and to the left of it
                 continue
@@ -181,6 +199,13 @@ class Relations(Mentions):
         for other in entities:
             self._pair(subject, relation, other, predicate.reversed)
 
+    def _holds(self, thing: Entity, subject: Entity) -> bool:
+        """Return True if this sentence says that the subject is inside a thing, so that it cannot be beside it."""
+        return any(
+            d.relation == "inside" and d.subjects == (subject,) and d.arguments == (thing,) and d.how.positive
+            for d in self.drafts if d.how.sentence == self.how.sentence
+        )  # fmt: skip
+
     def _at_the_other(self, subject: Entity, predicate: Predicate) -> bool:
         """Read *a cooler at one end and the basket at the other*; False for another thing than an end."""
         other = [a for a in predicate.arguments if a.pronoun == "other" and a.determiner == "the" and not a.head]
@@ -249,8 +274,13 @@ class Relations(Mentions):
         if len(entities) == 1 and not entities[0].itself.members and entities[0].plural:
             entities[0].itself.split(2)
         ends = [e for e in entities if e.role in (Role.THING, Role.SURROUNDING)]
+        persons = [e for e in entities if e.role in (Role.VIEWER, Role.PERSON)]
         if ends and (len(ends) > 1 or ends[0].size > 1):
             self._add("between", (subject,), tuple(ends))
+        elif not ends and persons and (len(persons) > 1 or persons[0].plural or persons[0].size > 1):
+            self._add("between", (subject,), (), value=persons[0].noun)
+        elif ends and persons:
+            self._add("between", (subject,), tuple(ends), value=persons[0].noun)
 
     def _distance(
         self, subject: Entity, predicate: Predicate, entities: list[Entity], others: list[Entity], regions: list[Region]
@@ -344,7 +374,23 @@ class Relations(Mentions):
         else:
             self._pair(subject, "on", last, False)
 
+    def _in_corner(self, subject: Entity, predicate: Predicate) -> bool:
+        """Read *at the upper left* as a corner: of the thing of the corner before, or else of the surface."""
+        if predicate.relation not in CORNERS:
+            return False
+        last = next((d for d in reversed(self.drafts) if d.relation in CORNERS and subject not in d.subjects), None)
+        near = last is not None and self.how.sentence - last.how.sentence <= 1
+        if last is not None and near and Guess.OF_THE_LAST not in last.how.guesses:
+            self._add(predicate.relation, (subject,), last.arguments, value=last.value)
+            return True
+        if not AT_CORNER.match(self.text[slice(*predicate.span)]):
+            return False
+        self._add("part", (subject,), (), value=predicate.relation.replace("_", " "))
+        return True
+
     def _bare_direction(self, subject: Entity, predicate: Predicate) -> None:
+        if self._in_corner(subject, predicate):
+            return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         if (
             predicate.part is None

@@ -7,7 +7,7 @@ from dataclasses import replace
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
 from deixis.grammar.english.discourse.mentions import SUPERLATIVES
-from deixis.grammar.english.discourse.references import POLES
+from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, SUPPORTS, Relations
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
@@ -43,6 +43,9 @@ UNARY = frozenset(
     ]
 )
 
+FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire", "tail", "chain", "flex"})
+"""Parts that reach to other places than their wholes."""
+
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 
 
@@ -67,8 +70,8 @@ class Statements(Relations):
                 return  # said of the part alone: 'the rounded edge is at the top'
             if any(a.pronoun in ("it", "they") and not a.head for a in predicate.arguments):
                 return  # 'the drill, its cord wrapped around it'
-            if relation == "upside_down":
-                return  # the label, and not the bottle
+            if relation == "upside_down" or (subject.noun in FLEXIBLE and relation in DIRECTIONS | {"under"}):
+                return  # the label, and not the bottle; the cable, and not the lamp
             subject = subject.whole
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
@@ -217,7 +220,12 @@ class Statements(Relations):
                     self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")
             elif phrase.head:
                 phrase = self._placed_on(phrase, subject)
+                own = any(a.pronoun == "it" for p in phrase.predicates for a in p.arguments)
+                if own and subject.role is Role.THING:  # 'the bucket is by the hatch with the lemons beside it'
+                    self.references.recent.insert(0, Focus(subject, [], None, self.how.sentence))
                 held = self._introduce(phrase, "with", subject)
+                if own and subject.role is Role.THING:
+                    self.references.recent.pop(0)
                 part = (
                     phrase.plural
                     and phrase.determiner is None

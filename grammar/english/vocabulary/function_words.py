@@ -221,7 +221,7 @@ APPROXIMATE = word_set("about around roughly approximately approx almost nearly"
 ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"
     " somewhat far much well also still already now currently actually again only even both either simply closely"
-    " yesterday today tomorrow tonight afterwards recently meanwhile"
+    " yesterday today tomorrow tonight afterwards recently meanwhile nowadays thereafter"
     " halfway midway partway mostly completely fully partially partly"
     " totally barely clearly diagonally vertically horizontally upright flat"
     " neatly carefully gently loosely tightly firmly evenly all up down back out off along there here"

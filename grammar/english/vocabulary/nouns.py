@@ -116,6 +116,13 @@ PEOPLE = frozenset(
         "crew",
         "staff",
         "member",
+        *("volunteer", "officer", "clerk", "client", "priest", "celebrant", "apprentice", "trainee", "technician"),
+        *("mechanic", "tailor", "baker", "steward", "porter", "voter", "referee", "opponent"),
+        *("audience", "congregation", "manager", "supervisor", "tenant", "landlord", "resident", "carer", "midwife"),
+        *("surgeon", "therapist", "vet", "farmer", "gardener", "hairdresser", "barber", "musician", "singer"),
+        *("soloist", "conductor", "photographer", "painter", "artist", "sculptor", "potter", "pupil", "bride"),
+        *("groom", "arbiter", "librarian", "plumber", "electrician", "carpenter", "butcher", "grocer", "cashier"),
+        *("follower", "worshipper", "parishioner", "novice", "newcomer", "beginner", "stranger"),
     ]
 )
 """Nouns of people, who are not objects of the scene."""
@@ -162,7 +169,7 @@ ABSTRACT = frozenset(
         "value",
         "age",
         *("layout", "setup", "description", "instruction", "method", "procedure", "purpose"),
-        *("blame", "pressure", "trust", "faith"),
+        *("blame", "pressure", "trust", "faith", "company", "care", "help", "thanks", "welcome"),
         *("trick", "advantage", "difficulty", "problem", "mistake", "effect", "mood", "atmosphere", "smell", "noise"),
         *("silence", "weather", "tradition", "custom", "history", "law", "risk", "danger", "chance", "news"),
     ]
@@ -210,6 +217,16 @@ VIEWER = "viewer"
 """Name of the person who looks at the scene: *me*, *you*, *the viewer*."""
 
 VIEWER_WORDS = frozenset({"me", "i", "you", "we", "us", "myself", "yourself"})
+
+EVENTS = frozenset(
+    ["shift", "class", "lesson", "service", "show", "rehearsal", "session", "game", "match", "meeting", "meal",
+     "dinner", "lunch", "breakfast", "supper", "concert", "performance", "ceremony", "wedding", "opening", "closing",
+     "visit", "arrival", "departure", "exam", "trip", "journey", "use", "school", "work", "bedtime"]
+)  # fmt: skip
+"""Nouns of events, before and after which is a time."""
+
+PLACES_OF = frozenset({"home", "place", "spot", "position", "location"})
+"""Nouns of the place of a thing, of which a place is that of the thing: *the place of the jug is on the shelf*."""
 
 GENERAL = frozenset(
     ["thing", "object", "item", "stuff", "something", "anything", "everything", "piece", "element", "one"]

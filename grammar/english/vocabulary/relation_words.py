@@ -14,7 +14,7 @@ ARRANGEMENTS = word_set(
 """Nouns after *in* that say how several things lie."""
 CIRCUMSTANCES = word_set(
     "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
-    " setting settings"
+    " setting settings game games emergency emergencies"
 )
 """Nouns that name no place after *in*, *at*, *as*, *on* and *under*: *in a formal setting*."""
 NOT_PLACES = word_set(
@@ -57,6 +57,8 @@ in_front: this side of, on this side of
 behind: from behind, out from behind, on the far side of, the far side of
 -: depending on, regardless of, in spite of, despite, in case of, thanks to, on behalf of, with regard to
 -: as shown in, as seen in, as described in, as explained in, in the shape of, in the form of, in terms of
+-: in full view of, in plain view of, in view of, within sight of, in the event of, for the use of, for use by
+-: at the disposal of, in the presence of, in the absence of, to the delight of, at the request of, in charge of
 -: clockwise from, counterclockwise from, anticlockwise from, clockwise of
 far: far from, far away from, away from, well away from, as far as possible from, as far away as possible from
 near: as close as possible to, as near as possible to

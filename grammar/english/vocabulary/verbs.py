@@ -89,7 +89,8 @@ other: lead leads led led leading, separate, shine shines shone shone shining, b
 
 REPORTS = word_set(
     "states claims reports says insists maintains asserts swears testifies stated claimed reported said insisted"
-    " maintained asserted swore testified alleges alleged"
+    " maintained asserted swore testified alleges alleged assume assumes assumed suppose supposes presume presumes"
+    " reckon reckons suggest suggests suggested recommend recommends advise advises argue argues pretend pretends"
 )
 """Verbs of persons who tell something that need not be so."""
 
@@ -154,7 +155,7 @@ PUT_VERBS = word_set(
     " slot hook suspend fasten secure connect press wedge nestle space clip clamp tip park sit lodge sandwich group"
     " tie shelve stow bury hide cram slip pack feed affix anchor angle straddle"
     " hammer tap pop chuck toss fling hitch latch staple stitch peg dab smear immerse submerge dock"
-    " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan"
+    " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan return"
 )
 
 NAMED_LIKE_THINGS = word_set(

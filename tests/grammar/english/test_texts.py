@@ -11,15 +11,16 @@ from deixis.ontology.graph.claims import Claim
 TEXTS = Path(__file__).parent / "texts"
 MIN_FOUND, MIN_RIGHT = 0.8, 0.9
 FLOORS = {
-    "unseen": (0.75, 0.9), "counters": (0.75, 0.9), "rooms": (0.8, 0.93), "stations": (0.6, 0.82),
-    "visitors": (0.7, 0.8), "arrivals": (0.65, 0.88), "boarders": (0.65, 0.85),
+    "unseen": (0.75, 0.9), "counters": (0.75, 0.9), "rooms": (0.8, 0.93), "stations": (0.72, 0.9),
+    "visitors": (0.78, 0.92), "arrivals": (0.65, 0.87), "boarders": (0.78, 0.92), "mechanics": (0.8, 0.88),
+    "galleys": (0.7, 0.75),
 }  # fmt: skip
 """Smallest shares of found and of right facts of texts that are harder than the others.
 
 Their authors did not know the reader. It was changed afterwards for those of ``unseen.txt``, ``counters.txt``,
-``rooms.txt`` and ``stations.txt``, and never for those of ``visitors.txt``. The texts of ``arrivals.txt`` and
-``boarders.txt`` were written together by an author who knew the reader, before any of them was read; it was changed
-for ``arrivals.txt`` alone.
+``rooms.txt``, ``stations.txt`` and ``visitors.txt``. The texts of ``arrivals.txt`` and ``boarders.txt``, and those of
+``mechanics.txt`` and ``galleys.txt``, were written by authors who knew the reader, before any of them was read; it was
+changed for all but ``galleys.txt``.
 """
 
 
@@ -225,6 +226,64 @@ def asserted(text: str) -> list[str]:
         ("The pen is by the clock, by chance.", ["near(pen, clock)"]),
         ("The window is at my back and the cup on the box.", ["behind(window, 'viewer')", "on(cup, box)"]),
         ("Behind the jug, where only staff may go, is a safe.", ["behind(safe, jug)"]),
+        ("The jam is at the top right of the board, the honey at the top left.",
+         ["top_right(jam, board)", "top_left(honey, board)"]),
+        ("A cup is on the box. A spoon is at the top left.", ["on(cup, box)", "part(spoon, 'top left')"]),
+        ("Polish bottles never stand on the towel.", ["not on(bottles, towel)"]),
+        ("The vac lives on the floor to the right of the box.", ["right(vac, box)", "on(vac, floor)"]),
+        ("Wire, tape and pins are in the first, the second and the third drawer respectively.",
+         ["inside(wire, drawer_1)", "inside(tape, drawer_2)", "inside(pins, drawer_3)"]),
+        ("Three tins are on the box. From left to right they hold nails, screws and pins.",
+         ["on(tin_1, box)", "on(tin_2, box)", "on(tin_3, box)", "inside(nails, tin_1)", "inside(screws, tin_2)",
+          "inside(pins, tin_3)", "row(tin_1, tin_2, tin_3, 'left to right')"]),
+        ("The two jars hold nails and screws. The cup is on the box.", ["on(cup, box)"]),
+        ("The jars hold nails and screws.", ["inside(nails, jars)", "inside(screws, jars)"]),
+        ("The bucket's home is under the tap.", ["under(bucket, tap)"]),
+        ("The parcel, which now lies behind the jug, is open.", ["behind(parcel, jug)", "open(parcel)"]),
+        ("Every player sets a boat inside the box and takes three crates.", ["inside(boat, box)"]),
+        ("The flask must not stand between the jug and the student.", ["not between(flask, jug, 'student')"]),
+        ("Rinse the jug and return it to its box.", ["inside(jug, box)"]),
+        ("The phone is in the box, since the cable is too short.", ["inside(phone, box)"]),
+        ("Behind the jug lies a pack, its flap opening away from you. At its left stands a jar.",
+         ["behind(pack, jug)", "pointing(flap, 'viewer')", "left(jar, pack)"]),
+        ("The cup is right of the jug; crackers, in a bowl, to the left of it.",
+         ["right(cup, jug)", "inside(crackers, bowl)", "left(crackers, jug)"]),
+        ("Fold the napkin into a rectangle. The cup is on the box.", ["on(cup, box)"]),
+        ("The envelope with the card stands between the two candles.",
+         ["between(envelope, candle_1, candle_2)"]),
+        ("The tin is lined with felt. The cup is on the box.", ["on(cup, box)"]),
+        ("The oil may hang from the hook or lie on the box.", []),
+        ("The case has fallen over and now lies across the lid.", ["across(case, lid)"]),
+        ("The ribbon is on the rail, and under that you'll find the roll.", ["on(ribbon, rail)", "under(roll, rail)"]),
+        ("The bottles stay on the box except the one being poured.", ["on(bottles, box)"]),
+        ("You have two crates, one either side of the drum.", ["each_side(crate_1, drum)", "each_side(crate_2, drum)"]),
+        ("There's a basket for incoming mail on top of the box.", ["on(basket, box)"]),
+        ("The jug is on the box, and behind the jug stand the lilies.", ["on(jug, box)", "behind(lilies, jug)"]),
+        ("Whatever she says, the box is under the chair.", ["under(box, chair)"]),
+        ("Erasers, by the way, have no place on the box.", ["not on(erasers, box)"]),
+        ("Behind the jug is a globe the size of a pumpkin.", ["behind(globe, jug)"]),
+        ("The bucket, tongs hooked over its rim, stands behind the jug.",
+         ["behind(bucket, jug)", "above(tongs, bucket)"]),
+        ("The caps lie along the box's far edge.", ["edge(caps, box, 'far')"]),
+        ("Needles stay in the case, and used ones drop into the bin.",
+         ["inside(needles, case)", "inside(needle, bin)"]),
+        ("Nothing is on the box except the clock.", ["none_on(box)", "on(clock, box)"]),
+        ("In a two-player game the pegs stay in the box.", []),
+        ("In the event of rain the mat is in front of the box.", []),
+        ("I built a boat for the fair and it stands on the box.", ["on(boat, box)"]),
+        ("The lathe stands at the left end of the rack, the safe underneath it.",
+         ["end(lathe, rack, 'left')", "under(safe, lathe)"]),
+        ("Towel first: fold it in half and lay it across the box.", ["across(towel, box)"]),
+        ("Sitting at the counter I have the lamp on the box.", ["on(lamp, box)"]),
+        ("The pegs must not lie next to the jar, nor may they stand on the box.",
+         ["not next_to(pegs, jar)", "not on(pegs, box)"]),
+        ("Snips live in the pocket; the knife doesn't, it's on the box.",
+         ["inside(snips, pocket)", "not inside(knife, pocket)", "on(knife, box)"]),
+        ("Get everything ready before your first shift! The cup is on the box.", ["on(cup, box)"]),
+        ("Bread? In the basket.", ["inside(bread, basket)"]),
+        ("The bins are under the desk, pushed right back against the box.",
+         ["under(bins, desk)", "against(bins, box)"]),
+        ("Most books assume that the ink is on the right. The cup is on the box.", ["on(cup, box)"]),
     ],
 )  # fmt: skip
 def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[str]) -> None:
