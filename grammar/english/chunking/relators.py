@@ -8,7 +8,7 @@ from functools import cache
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.chunking.noun_phrases import NounChunker
 from deixis.grammar.english.tokens import Word
-from deixis.grammar.english.tree import Degree
+from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.function_words import (
     DEGREE_ADVERBS,
     HEDGES,
@@ -19,6 +19,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     UNITS,
 )
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
+from deixis.grammar.english.vocabulary.nouns import FRONTS, PARTS, last_word
 from deixis.grammar.english.vocabulary.relation_words import (
     DIRECTION_WORDS,
     PLACE_NOUNS,
@@ -229,7 +230,8 @@ class RelatorChunker:
                 last = self.chunks[-1] if self.chunks else None
                 aims = last is not None and isinstance(last.value, VerbGroup) and last.value.kind in ("face", "point")
                 ends = self.norms[alone[0]] in ("", ",", ".", ";", "and")
-                if not aims and not (self._previous() == "NP" and ends):
+                noted = last is not None and last.type == "NP" and ends and _names_part(last.value)
+                if not aims and not noted:
                     return None
             if alone[1].relation == "there" and self._previous() not in FINITE | {"ADV", "ADVERB", "NP", "PART"}:
                 return None
@@ -372,6 +374,13 @@ class RelatorChunker:
 
 
 _SPOTS = frozenset({"corner", "edge", "end", "side", "part"})
+
+
+def _names_part(phrase: NounPhrase) -> bool:
+    """Return True for *bowls* in *six spoons, bowls downwards*, and False for *four covers* in *four covers down*."""
+    bare = phrase.determiner is None and phrase.count is None
+    return bare or last_word(phrase.head) in PARTS | FRONTS
+
 
 _AIMS = word_set("left right up down forward forwards backward backwards away upward downward sideways")
 
