@@ -282,7 +282,8 @@ class NounFinder:
         bool
             False for a participle before any other word.
         """
-        return self.norms[at].endswith("ed") and self.norms[at + 1] in ("one", "ones")
+        unknown = self.norms[at].endswith("ed") and not is_adjective(self.norms[at])  # 'red' is known
+        return unknown and self.norms[at + 1] in ("one", "ones")
 
     def adjective_before_noun(self, at: int) -> bool:
         """Return True if the word is an adjective with a noun after it: *near edge*, *left lamp*.

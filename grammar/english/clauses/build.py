@@ -183,6 +183,7 @@ class Builder(Transformer[Any, Built]):
         for joint, mods in zip(joined[::2], joined[1::2], strict=True):
             if joint.type == "OJ":
                 one = mods.phrase.pronoun == "one" and mods.phrase.determiner == "the" and not mods.phrase.negated
+                one = one and mods.phrase.plural == phrase.plural
                 if (
                     joint.value == "," and one and not phrase.members
                 ):  # apposition: 'the picture on the left, the one in red'
@@ -255,7 +256,8 @@ class Builder(Transformer[Any, Built]):
             first, second = members
             own = second.owner is not None and second.owner.pronoun in ("it", "they")
             named = second.determiner is not None or (second.owner is not None and not own)
-            if named and not is_place(first) and first.pronoun is None:  # apposition
+            other = first.plural != second.plural and second.determiner == "the" and bool(second.predicates)
+            if named and not other and not is_place(first) and first.pronoun is None:  # apposition
                 kind = Predicate("kind", (second,), second.span)
                 return Noun(replace(first, predicates=(*first.predicates, kind), span=span), extra)
         joined_by = "or" if "or" in joints else "and"

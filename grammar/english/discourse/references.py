@@ -621,6 +621,14 @@ class References:
                 self.guesses.append((phrase.span, Guess.ELLIPSIS))
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
         second = relation is None and phrase.pronoun == "other" and phrase.determiner == "the" and not phrase.plural
+        leaves = [] if group is None else list(group.leaves())
+        free = [leaf for leaf in leaves if not any(dimension == "picked" for dimension, _ in leaf.adjectives)]
+        before = self.recent[0] if self.recent and self.recent[0].sentence == self.sentence else None
+        labelled = before is not None and before.subject is group and before.relation is None
+        listed = before is not None and (labelled or before.subject in leaves)
+        if further and group is not None and listed and free and not ranks:
+            # 'two cups: a red one on the box, a blue one behind the jar'
+            return self._picked(self.member(group, phrase) or free[0], phrase)
         if further and group is not None and group.noun and phrase.of is None:
             return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
         if (further or (second and group is None)) and phrase.of is None and (last := self._last_thing(besides)):
@@ -636,7 +644,6 @@ class References:
             return self._another_one(phrase, besides, relation)
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
-            free = [leaf for leaf in group.leaves() if not any(pair[0] == "picked" for pair in leaf.adjectives)]
             found = self._picked(free[0], phrase) if free else None
         if found is not None:
             self._picked(found, phrase)
@@ -682,8 +689,9 @@ class References:
 
     def _last_noun(self) -> str | None:
         last = self.recent[0].subject if self.recent else None
-        if last is not None and last.noun and (last.itself.members or last.plural) and last.role is Role.THING:
-            return last.noun  # 'three buttons on the panel: the red one …'
+        many = last is not None and (bool(last.itself.members) or last.plural or last.itself.group is not None)
+        if last is not None and last.noun and many and last.role is Role.THING:
+            return last.noun  # 'three buttons on the panel: the red one …, the green one …'
         return self.entities[-1].noun if self.entities else None
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
