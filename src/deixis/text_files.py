@@ -1,4 +1,4 @@
-"""Read text files of users within limits: never a folder or a device, and never more than a stated size."""
+"""Read text files of users within limits, never a folder or a device; replace text files in one step."""
 
 from __future__ import annotations
 
@@ -78,6 +78,36 @@ def read_lines(
             if len(line) > most:
                 raise error(f"{file}:{number}: a line must have at most {most:,} characters; split it")
             yield line
+
+
+def replace_text(file: str | Path, text: str) -> None:
+    """Write a text as a UTF-8 file in one step, so that a full disk or the end of the program leaves the earlier file.
+
+    Parameters
+    ----------
+    file
+        The file, whose folder exists. A link is followed, and the permissions of an earlier file stay. A pipe or a
+        device is written to directly.
+    text
+        The text; its line ends are written as they are.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    if Path(file).exists() and not Path(file).is_file():
+        Path(file).write_text(text, encoding="utf-8", newline="")
+        return
+    target = Path(file).resolve()
+    draft = target.with_name(f".{target.name}.{os.getpid()}")
+    try:
+        draft.write_text(text, encoding="utf-8", newline="")
+        if target.exists():
+            draft.chmod(target.stat().st_mode & 0o7777)
+        draft.replace(target)
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 @contextmanager

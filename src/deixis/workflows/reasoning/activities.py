@@ -149,7 +149,16 @@ def learn(name: str, sources: Sequence[str | Path | StepSequence], known: str | 
     -------
     Activity
         The activity with all of its examples.
+
+    Raises
+    ------
+    SettingError
+        If the name is blank.
+    ActivityTextError
+        If the file of activities cannot be read or written.
     """
+    if not name.strip():
+        raise SettingError("the name of an activity must have at least one word, got none")
     activity = Activity.learned(name, [sequence_of(source) for source in sources])
     if known is not None:
         before = read_activities(known) if Path(known).exists() else ()
