@@ -190,7 +190,7 @@ def box_of(statement: Statement) -> tuple[float, ...] | None:
         return None
     try:
         corners = tuple(map(float, json.loads(statement.object)))
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, OverflowError, RecursionError):
         return None
     return corners if len(corners) in (4, 6) and all(map(math.isfinite, corners)) else None
 

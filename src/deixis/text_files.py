@@ -94,12 +94,19 @@ def replace_text(file: str | Path, text: str) -> None:
     Raises
     ------
     OSError
-        If the file cannot be written.
+        If the file cannot be written; the error names it.
     """
-    if Path(file).exists() and not Path(file).is_file():
-        Path(file).write_text(text, encoding="utf-8", newline="")
+    try:
+        _replace_text(Path(file), text)
+    except OSError as error:  # which may name the draft, or nothing
+        raise OSError(error.errno, error.strerror, os.fspath(file)) from error
+
+
+def _replace_text(file: Path, text: str) -> None:
+    if file.exists() and not file.is_file():
+        file.write_text(text, encoding="utf-8", newline="")
         return
-    target = Path(file).resolve()
+    target = file.resolve()
     draft = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         draft.write_text(text, encoding="utf-8", newline="")

@@ -20,7 +20,7 @@ from deixis.grammar.activities import (
     read_activity,
     told_activity,
 )
-from deixis.reasoning.activities.activity import Activity, StepSequence
+from deixis.reasoning.activities.activity import Activity, StepSequence, box_of
 from deixis.reasoning.activities.grounding import ground_activity, recognise_activity
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
@@ -195,3 +195,11 @@ def test_an_activity_without_a_name_is_refused(tmp_path: Path) -> None:
 def test_an_empty_sequence_is_none_of_the_activities() -> None:
     dinner = Activity.learned("dinner", [laid("plate fork")])
     assert recognise_activity([dinner], laid("")).name is None
+
+
+@pytest.mark.parametrize(
+    "box", ["[" * 50_000, f"[{'9' * 400}, 1, 2, 3]", "[1e400, 1, 2, 3]", '{"a": 1}', "null", "[true]", "x"]
+)
+def test_a_place_that_is_not_a_box_is_no_place(box: str) -> None:
+    assert box_of(Statement("cup", "at", box)) is None
+    assert StepSequence.of([Fluent("f1", Statement("cup", "at", box), Bounds(1, 1))]).laying[0].place is None
