@@ -265,9 +265,11 @@ def _laying(entry: Any) -> Laying:
     for thing in entry:
         fits = isinstance(thing, list) and len(thing) == 2 and isinstance(thing[0], str)
         place = thing[1] if fits else None
-        pair = isinstance(place, list) and len(place) == 2 and all(map(_is_number, place))
-        _require(fits and (place is None or pair), "a thing of 'layings' must be a kind and either two numbers or null")
-        things.append(LaidThing(thing[0], (float(place[0]), float(place[1])) if pair else None))
+        if isinstance(place, list) and len(place) == 2 and all(map(_is_number, place)):
+            things.append(LaidThing(thing[0], (float(place[0]), float(place[1]))))
+            continue
+        _require(fits and place is None, "a thing of 'layings' must be a kind and either two numbers or null")
+        things.append(LaidThing(thing[0], None))
     return tuple(things)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import os
 import stat
 from collections.abc import Iterator
@@ -80,6 +82,34 @@ def read_lines(
             yield line
 
 
+@contextmanager
+def changing(file: str | Path) -> Iterator[None]:
+    """Keep other processes that call this function from changing the files of a folder inside the block.
+
+    Parameters
+    ----------
+    file
+        The file that is read, changed and written. The lock is that of its folder, because :func:`replace_text` makes
+        a new file. Where the folder does not exist or cannot be locked, there is no lock.
+
+    Yields
+    ------
+    None
+        Nothing; the lock ends with the block.
+    """
+    try:
+        folder = os.open(Path(file).resolve().parent, os.O_RDONLY)
+    except OSError:
+        yield
+        return
+    try:
+        with contextlib.suppress(OSError):
+            fcntl.flock(folder, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(folder)
+
+
 def replace_text(file: str | Path, text: str) -> None:
     """Write a text as a UTF-8 file in one step, so that a full disk or the end of the program leaves the earlier file.
 
@@ -99,7 +129,8 @@ def replace_text(file: str | Path, text: str) -> None:
     try:
         _replace_text(Path(file), text)
     except OSError as error:  # which may name the draft, or nothing
-        raise OSError(error.errno, error.strerror, os.fspath(file)) from error
+        reason = error.strerror if Path(file).parent.is_dir() else "there is no such folder; make it first"
+        raise OSError(error.errno, reason, os.fspath(file)) from error
 
 
 def _replace_text(file: Path, text: str) -> None:

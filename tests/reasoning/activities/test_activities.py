@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import random
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -203,3 +204,14 @@ def test_an_empty_sequence_is_none_of_the_activities() -> None:
 def test_a_place_that_is_not_a_box_is_no_place(box: str) -> None:
     assert box_of(Statement("cup", "at", box)) is None
     assert StepSequence.of([Fluent("f1", Statement("cup", "at", box), Bounds(1, 1))]).laying[0].place is None
+
+
+def test_examples_that_are_learned_at_once_are_all_kept(tmp_path: Path) -> None:
+    known = tmp_path / "known.json"
+    threads = [threading.Thread(target=learn, args=("tea", [laid("cup spoon")], known)) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [each.examples for each in read_activities(known)] == [8]
+    assert list(tmp_path.iterdir()) == [known]

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import io
+import os
+import signal
+import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 from commands import deixis
 from read_only import make_read_only
+from timing import BUSY_SECONDS, until
 
+import deixis as package
 from deixis.grammar.layout.parser import parse_script
 from deixis.perception.errors import SimulationError
 from deixis.robot.live.story import simulated_story
@@ -105,3 +111,20 @@ def test_a_file_that_cannot_be_read_is_refused_at_first(folder: Path, tmp_path: 
     code, out, err = deixis("robot", "run", "--from", folder, "--memory", tmp_path / "m", option, tmp_path / "bad")
     assert (code, out) == (2, "") and err.startswith(f"deixis: {tmp_path / 'bad'}: ")
     assert "the story has ended" not in err and not (tmp_path / "m").exists()
+
+
+@pytest.mark.parametrize("processes", [[], ["--processes"]], ids=["threads", "processes"])
+def test_ctrl_c_ends_the_robot_and_all_its_processes_quietly(tmp_path: Path, processes: list[str]) -> None:
+    (tmp_path / "clouds").mkdir()
+    command = [sys.executable, "-m", "deixis.cli.app", "robot", "run", "--from", tmp_path / "clouds", "--grows"]
+    environment = {**os.environ, "PYTHONPATH": str(Path(package.__file__).parents[1])}
+    streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    memory = tmp_path / "memory"
+    robot = subprocess.Popen(
+        [*command, "--memory", memory, *processes], env=environment, start_new_session=True, **streams
+    )
+    assert until(memory.exists)
+    time.sleep(1.0)  # the modules start
+    os.killpg(robot.pid, signal.SIGINT)
+    _, err = robot.communicate(timeout=BUSY_SECONDS)
+    assert (robot.returncode, err) == (130, b"")
