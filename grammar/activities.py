@@ -23,7 +23,8 @@ from deixis.printable import shortened
 from deixis.reasoning.activities.activity import RELATIONS, Activity, LaidThing, Laying, Step, StepSequence, kind_of
 from deixis.text_files import replace_text
 
-_NUMBERS = {word: number for number, word in enumerate(("one", "two", "three", "four", "five", "six"), 1)}
+_COUNTED = "one two three four five six seven eight nine ten eleven twelve"
+_NUMBERS = {word: number for number, word in enumerate(_COUNTED.split(), 1)}
 _NEXT = r"(?:and )?(?:then|next|after that|afterwards|after this|finally|at last|lastly|last|at the end|in the end)"
 _FIRST = r"(?:first of all|at first|first|firstly|to begin with)"
 _BREAK = re.compile(rf"[.;!\n]+|,?\s*\b{_NEXT}\b,?", re.IGNORECASE)
@@ -42,7 +43,7 @@ _STATES = re.compile(r"\b(?:is|are|isn['’]t|aren['’]t|was|were)\b|['’]s\b"
 """Words of a sentence that states how things are, rather than what is being done."""
 
 _ITEM = re.compile(
-    r"^(?:(?P<det>the|a|an|my|your|all|all the|both|both the|(?:the )?(?:one|two|three|four|five|six|\d))\s+)?"
+    rf"^(?:(?P<det>(?:the )?(?:{'|'.join(_NUMBERS)}|\d\d?)|the|a|an|my|your|all the|all|both the|both)\s+)?"
     r"(?P<noun>[a-z][a-z _-]*?)$",
     re.IGNORECASE,
 )

@@ -88,7 +88,7 @@ def test_a_text_is_written_directly_to_a_pipe(tmp_path: Path) -> None:
     os.close(source)
 
 
-def test_an_error_of_writing_names_the_file_and_the_missing_folder(tmp_path: Path) -> None:
+def test_an_error_of_writing_names_file_and_missing_folder(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="there is no such folder; make it first") as caught:
         replace_text(tmp_path / "missing" / "a.txt", "text")
     assert caught.value.filename == str(tmp_path / "missing" / "a.txt")

@@ -215,3 +215,9 @@ def test_examples_that_are_learned_at_once_are_all_kept(tmp_path: Path) -> None:
         thread.join()
     assert [each.examples for each in read_activities(known)] == [8]
     assert list(tmp_path.iterdir()) == [known]
+
+
+@pytest.mark.parametrize(("said", "number"), [("nine", 9), ("twelve", 12), ("the seven", 7), ("10", 10), ("two", 2)])
+def test_a_number_of_things_is_never_a_part_of_their_name(said: str, number: int) -> None:
+    ((item,),) = read_activity(f"first {said} cups")
+    assert (item.kind, item.count) == ("cup", number)

@@ -96,7 +96,8 @@ def learn_reference(
     before = prior or shipped_model()
     if not examples:
         more = f"; and {len(left_out) - 1} more lines" if len(left_out) > 1 else ""
-        raise DescriptionError("; ".join(("nothing to learn", *left_out[:1])) + more)
+        why = left_out[0] if left_out else 'there is no description; write lines {"text": …, "scene": …, "target": …}'
+        raise DescriptionError(f"nothing to learn; {why}{more}")
     unset = {name: np.zeros_like(values) for name, values in initial_weights(default_ontology().colours).items()}
     start = replace(before, weights={**unset, **before.weights})
     learned = replace(start, weights=fit(start, examples, strength, ITERATIONS))

@@ -89,3 +89,10 @@ def test_ctrl_c_ends_a_query_at_once(memory: Path) -> None:
         assert ran.wait(timeout=BUSY_SECONDS) == 130
         assert (ran.stdout.read(), ran.stderr.read()) == ("", "")
     assert not (memory / "semantic.snapshot").exists()
+
+
+def test_half_of_a_surrogate_pair_in_a_query_has_its_place(memory: Path) -> None:
+    code, out, err = deixis("query", 'ASK { ?a ?b "\udcff" }', "--memory", memory)
+    assert (code, out) == (2, "") and err.startswith(
+        "deixis: query:1:14: this is not a character; write the query in UTF-8"
+    )

@@ -116,15 +116,24 @@ def test_a_file_that_cannot_be_read_is_refused_at_first(folder: Path, tmp_path: 
 @pytest.mark.parametrize("processes", [[], ["--processes"]], ids=["threads", "processes"])
 def test_ctrl_c_ends_the_robot_and_all_its_processes_quietly(tmp_path: Path, processes: list[str]) -> None:
     (tmp_path / "clouds").mkdir()
-    command = [sys.executable, "-m", "deixis.cli.app", "robot", "run", "--from", tmp_path / "clouds", "--grows"]
-    environment = {**os.environ, "PYTHONPATH": str(Path(package.__file__).parents[1])}
-    streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     memory = tmp_path / "memory"
+    command = ["robot", "run", "--from", tmp_path / "clouds", "--grows", "--memory", memory, *processes]
     robot = subprocess.Popen(
-        [*command, "--memory", memory, *processes], env=environment, start_new_session=True, **streams
+        [sys.executable, "-m", "deixis.cli.app", *map(str, command)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(Path(package.__file__).parents[1])},
+        start_new_session=True,
     )
     assert until(memory.exists)
     time.sleep(1.0)  # the modules start
     os.killpg(robot.pid, signal.SIGINT)
     _, err = robot.communicate(timeout=BUSY_SECONDS)
     assert (robot.returncode, err) == (130, b"")
+
+
+def test_an_unwritable_story_of_an_apprentice_is_refused_at_first(tmp_path: Path) -> None:
+    (tmp_path / "out").touch()
+    code, out, err = deixis("experiment", "apprentice", "--tables", 10**9, "--story", tmp_path / "out")
+    assert (code, out) == (2, "") and "the folder of the picture cannot be made" in err
