@@ -133,7 +133,7 @@ def test_ctrl_c_ends_the_robot_and_all_its_processes_quietly(tmp_path: Path, pro
     assert (robot.returncode, err) == (130, b"")
 
 
-def test_an_unwritable_story_of_an_apprentice_is_refused_at_first(tmp_path: Path) -> None:
+def test_an_unwritable_story_of_apprentice_is_refused_at_first(tmp_path: Path) -> None:
     (tmp_path / "out").touch()
     code, out, err = deixis("experiment", "apprentice", "--tables", 10**9, "--story", tmp_path / "out")
     assert (code, out) == (2, "") and "the folder of the picture cannot be made" in err
