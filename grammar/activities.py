@@ -18,10 +18,13 @@ from deixis.errors import DeixisError
 from deixis.grammar.files import read_text
 from deixis.ontology.inflection import is_plural, singular
 from deixis.ontology.relations.allen import ALL_ALLEN
-from deixis.ontology.strict_json import parse_json
-from deixis.reasoning.activities.activity import RELATIONS, Activity, LaidThing, Step, StepSequence, kind_of
+from deixis.ontology.strict_json import json_type, parse_json
+from deixis.printable import shortened
+from deixis.reasoning.activities.activity import RELATIONS, Activity, LaidThing, Laying, Step, StepSequence, kind_of
+from deixis.text_files import replace_text
 
-_NUMBERS = {word: number for number, word in enumerate(("one", "two", "three", "four", "five", "six"), 1)}
+_COUNTED = "one two three four five six seven eight nine ten eleven twelve"
+_NUMBERS = {word: number for number, word in enumerate(_COUNTED.split(), 1)}
 _NEXT = r"(?:and )?(?:then|next|after that|afterwards|after this|finally|at last|lastly|last|at the end|in the end)"
 _FIRST = r"(?:first of all|at first|first|firstly|to begin with)"
 _BREAK = re.compile(rf"[.;!\n]+|,?\s*\b{_NEXT}\b,?", re.IGNORECASE)
@@ -40,14 +43,14 @@ _STATES = re.compile(r"\b(?:is|are|isn['’]t|aren['’]t|was|were)\b|['’]s\b"
 """Words of a sentence that states how things are, rather than what is being done."""
 
 _ITEM = re.compile(
-    r"^(?:(?P<det>the|a|an|my|your|all|all the|both|both the|(?:the )?(?:one|two|three|four|five|six|\d))\s+)?"
+    rf"^(?:(?P<det>(?:the )?(?:{'|'.join(_NUMBERS)}|\d\d?)|the|a|an|my|your|all the|all|both the|both)\s+)?"
     r"(?P<noun>[a-z][a-z _-]*?)$",
     re.IGNORECASE,
 )
 
 
 class ActivityTextError(DeixisError, ValueError):
-    """A described activity, or a file of activities, that cannot be read."""
+    """A described activity, or a file of activities, that cannot be read or written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,37 +206,90 @@ def read_activities(path: str | Path) -> tuple[Activity, ...]:
         If the file is not one of activities.
     """
     data = parse_json(read_text(Path(path), str(path)), str(path), ActivityTextError, "is not a number")
-    try:
-        return tuple(_activity(entry) for entry in data["activities"])
-    except KeyError as error:
-        raise ActivityTextError(f"{path}: not a file of activities: the key {error} is missing") from error
-    except (TypeError, ValueError, IndexError) as error:
-        raise ActivityTextError(f"{path}: not a file of activities ({str(error).splitlines()[0]})") from error
+    entries = data.get("activities") if isinstance(data, dict) else None
+    if not isinstance(entries, list):
+        raise ActivityTextError(f"{path}: not a file of activities: it must be an object with the list 'activities'")
+    found: dict[str, Activity] = {}
+    for number, entry in enumerate(entries, 1):
+        try:
+            activity = _activity(entry)
+            if activity.name in found:
+                raise ActivityTextError("an earlier one has this name; rename one of them")
+        except ActivityTextError as error:
+            name = entry.get("name") if isinstance(entry, dict) else None
+            which = f"'{shortened(name, 60)}'" if isinstance(name, str) and name.strip() else str(number)
+            raise ActivityTextError(f"{path}: not a file of activities: activity {which}: {error}") from error
+        found[activity.name] = activity
+    return tuple(found.values())
 
 
-def _activity(entry: dict[str, Any]) -> Activity:
-    steps = tuple(Step(*step) for step in entry["steps"])
+def _activity(entry: Any) -> Activity:
+    """Return the activity of an entry of a file; raise ActivityTextError if it is not one."""
+    _require(isinstance(entry, dict), f"it must be an object, got {json_type(entry)}")
+    missing = [key for key in ("name", "examples", "steps", "present", "counts") if key not in entry]
+    _require(not missing, f"the key '{', '.join(missing)}' is missing")
+    name, examples = entry["name"], entry["examples"]
+    _require(isinstance(name, str) and bool(name.strip()), f"'name' must be a text, got {json_type(name)}")
+    _require(_is_whole(examples, 1), "'examples' must be a whole number of at least 1")
+    lists = {key: entry.get(key, []) for key in ("steps", "present", "counts", "layings")}
+    for key, value in lists.items():
+        _require(isinstance(value, list), f"'{key}' must be a list, got {json_type(value)}")
+    steps = tuple(map(_step, lists["steps"]))
     n = len(steps)
+    _require(len(set(steps)) == n, "'steps' must differ from each other")
+    present = lists["present"]
+    _require(
+        len(present) == n and all(_is_number(each) and 0 <= each <= examples for each in present),
+        "'present' must have a number from 0 to 'examples' for each step",
+    )
     counts = np.zeros((n, n, RELATIONS))
-    for a, b, relation, number in entry["counts"]:
-        counts[a, b, relation] = number
-    present = np.array(entry["present"], dtype=np.float64)
-    if present.shape != (n,) or (counts < 0).any() or not int(entry["examples"]) > 0:
-        raise ValueError("its numbers do not fit its steps")
+    for count in lists["counts"]:
+        fits = isinstance(count, list) and len(count) == 4 and all(_is_whole(place, 0) for place in count[:3])
+        fits = fits and max(count[:2]) < n and count[2] < RELATIONS and _is_number(count[3]) and count[3] >= 0
+        _require(fits, "each of 'counts' must be two steps, a relation (0 to 12) and a number of at least 0")
+        counts[count[0], count[1], count[2]] = count[3]
     stated = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
-    layings = tuple(tuple(_laid(*thing) for thing in laying) for laying in entry.get("layings", ()))
-    return Activity(str(entry["name"]), steps, stated, present, counts, int(entry["examples"]), layings)
+    layings = tuple(map(_laying, lists["layings"]))
+    return Activity(name, steps, stated, np.array(present, np.float64), counts, examples, layings)
 
 
-def _laid(kind: str, place: list[float] | None) -> LaidThing:
-    if place is None:
-        return LaidThing(str(kind), None)
-    x, y = map(float, place)
-    return LaidThing(str(kind), (x, y))
+def _step(entry: Any) -> Step:
+    fits = isinstance(entry, list) and len(entry) == 4 and isinstance(entry[0], str) and _is_whole(entry[3], 1)
+    fits = fits and all(part is None or isinstance(part, str) for part in entry[1:3])
+    _require(fits, "each of 'steps' must be a thing, a predicate or null, an object or null, and a number")
+    return Step(*entry)
+
+
+def _laying(entry: Any) -> Laying:
+    _require(isinstance(entry, list), "each of 'layings' must be a list")
+    things = []
+    for thing in entry:
+        fits = isinstance(thing, list) and len(thing) == 2 and isinstance(thing[0], str)
+        place = thing[1] if fits else None
+        if isinstance(place, list) and len(place) == 2 and all(map(_is_number, place)):
+            things.append(LaidThing(thing[0], (float(place[0]), float(place[1]))))
+            continue
+        _require(fits and place is None, "a thing of 'layings' must be a kind and either two numbers or null")
+        things.append(LaidThing(thing[0], None))
+    return tuple(things)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_whole(value: Any, least: int) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= least
+
+
+def _require(holds: bool, what: str) -> None:
+    """Raise ActivityTextError with what a file of activities must have, unless it does."""
+    if not holds:
+        raise ActivityTextError(what)
 
 
 def write_activities(path: str | Path, activities: tuple[Activity, ...]) -> None:
-    """Write learned activities to a file.
+    """Write learned activities to a file, in one step.
 
     Parameters
     ----------
@@ -241,6 +297,11 @@ def write_activities(path: str | Path, activities: tuple[Activity, ...]) -> None
         The file.
     activities
         The activities.
+
+    Raises
+    ------
+    ActivityTextError
+        If the file cannot be written; an earlier file is then unchanged.
     """
     entries = [
         {
@@ -253,4 +314,7 @@ def write_activities(path: str | Path, activities: tuple[Activity, ...]) -> None
         }
         for each in activities
     ]
-    Path(path).write_text(json.dumps({"activities": entries}, indent=1) + "\n", encoding="utf-8")
+    try:
+        replace_text(path, json.dumps({"activities": entries}, indent=1) + "\n")
+    except OSError as error:
+        raise ActivityTextError(f"{path}: the activities cannot be written: {error.strerror}") from error

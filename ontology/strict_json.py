@@ -1,8 +1,9 @@
-"""Strict reading of the JSON that users write: no repeated keys, no ``NaN``, and no numbers of unlimited length."""
+"""Strict reading of the JSON that users write: no repeated keys, no ``NaN``, and no numbers beyond double precision."""
 
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections import Counter
 from typing import Any
@@ -10,8 +11,8 @@ from typing import Any
 from deixis.errors import DeixisError
 from deixis.printable import shortened
 
-MAX_DIGITS = 4000
-"""Maximum number of digits of a whole number, a little below Python's own limit."""
+MAX_DIGITS = 308
+"""Maximum number of digits of a whole number, so that each converts to a finite double."""
 
 
 def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | None) -> Any:
@@ -26,7 +27,8 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
     error
         The type of the error to raise.
     no_number
-        Message about ``NaN`` and ``Infinity``, after their name. None accepts them, for readers that check them later.
+        Message about ``NaN`` and ``Infinity``, after their name. None accepts them, and numbers such as ``1e400`` that
+        are infinite as doubles, for readers that check them later.
 
     Returns
     -------
@@ -52,9 +54,16 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
         raise ValueError(f"{name} {no_number}")
 
     def whole_number(digits: str) -> int:
-        if len(digits) > MAX_DIGITS:
-            raise ValueError(f"a number of {len(digits)} digits is too large: at most {MAX_DIGITS} digits are read")
+        count = len(digits.removeprefix("-"))
+        if count > MAX_DIGITS:
+            raise ValueError(f"a number of {count} digits is too large: at most {MAX_DIGITS} digits are read")
         return int(digits)
+
+    def finite(digits: str) -> float:
+        number = float(digits)
+        if math.isinf(number):
+            raise ValueError(f"the number {shortened(digits, 60)} is too large; the largest is about 1.8e308")
+        return number
 
     def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
@@ -68,6 +77,7 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
         return json.loads(
             text.removeprefix("\ufeff"),
             parse_constant=refuse if no_number else None,
+            parse_float=finite if no_number else None,
             parse_int=whole_number,
             object_pairs_hook=without_repeats,
         )

@@ -22,6 +22,9 @@ from deixis.memory.episodes.fluents.changes import Add
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import EpisodeError, ImportFormatError, RejectedWriteError
 from deixis.memory.folder import EPISODES, size
+from deixis.ontology.strict_json import json_type, parse_json
+from deixis.printable import shortened
+from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.errors import FluentError
 from deixis.reasoning.temporal.fluent import Statement
@@ -183,20 +186,33 @@ def read_episodes(text: str, file: str) -> tuple[datetime, tuple[EpisodicFluent,
     ImportFormatError
         If the text is not an export.
     """
+    data = parse_json(text, file, ImportFormatError, "is not a time; write null for an unknown bound")
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise ImportFormatError(f"{file}: an export of episodes must state the format {FORMAT!r}")
+    if data.get("version") != VERSION:
+        raise ImportFormatError(f"{file}: the version of the format must be {VERSION}, got {_shown(data, 'version')}")
     try:
-        data = json.loads(text)
-        if not isinstance(data, dict) or data.get("format") != FORMAT:
-            raise ImportFormatError(f"{file}: an export of episodes must state the format {FORMAT!r}")
-        if data.get("version") != VERSION:
-            raise ImportFormatError(f"{file}: the version of the format must be {VERSION}, got {data.get('version')!r}")
         origin = datetime.fromisoformat(data["origin"])
-        if origin.tzinfo is None:
-            raise ImportFormatError(f"{file}: the origin of times must have a time zone")
-        return origin, tuple(map(_of_list, data["fluents"]))
-    except (ValueError, KeyError, TypeError, OverflowError, RecursionError, EpisodeError, FluentError) as error:
-        if isinstance(error, ImportFormatError):
-            raise
-        raise ImportFormatError(f"{file}: not an export of episodes: {str(error).splitlines()[0]}") from error
+    except (KeyError, TypeError, ValueError):
+        raise ImportFormatError(
+            f"{file}: 'origin' must be a time as in 2026-11-23T12:30:00+00:00, got {_shown(data, 'origin')}"
+        ) from None
+    if origin.tzinfo is None:
+        raise ImportFormatError(f"{file}: the origin of times must have a time zone")
+    if not isinstance(data.get("fluents"), list):
+        raise ImportFormatError(f"{file}: 'fluents' must be a list, got {_shown(data, 'fluents')}")
+    fluents = []
+    for number, entry in enumerate(data["fluents"], 1):
+        try:
+            fluents.append(_of_list(entry))
+        except (ImportFormatError, EpisodeError, FluentError, SettingError) as error:
+            raise ImportFormatError(f"{file}: fluent {number} of the list: {error}") from error
+    return origin, tuple(fluents)
+
+
+def _shown(data: dict[str, Any], key: str) -> str:
+    """Return the value of a key for messages; 'nothing' if it is missing."""
+    return shortened(json.dumps(data[key], ensure_ascii=False), 60) if key in data else "nothing"
 
 
 def has_ending(file: Path) -> bool:
@@ -226,8 +242,33 @@ def _finite(bounds: Bounds) -> list[float | None]:
     return [time if math.isfinite(time) else None for time in (bounds.lower, bounds.upper)]
 
 
-def _of_list(data: list[Any]) -> EpisodicFluent:
-    id, (subject, predicate, thing), ends, certainty, (origin, by, event) = data
+def _of_list(data: Any) -> EpisodicFluent:
+    """Return the fluent in parsed JSON; raise ImportFormatError if it has another form."""
+    form = "[id, [subject, predicate, object], [4 times or null], certainty, [origin, by, event]]"
+    if not isinstance(data, list) or len(data) != 5:
+        raise ImportFormatError(f"it must be {form}, got {json_type(data)}")
+    id, statement, ends, certainty, source = data
+    for name, value, length in (("statement", statement, 3), ("list of times", ends, 4), ("source", source, 3)):
+        if not isinstance(value, list) or len(value) != length:
+            raise ImportFormatError(f"its {name} must be a list of {length} parts, as in {form}")
+    for number in (*(end for end in ends if end is not None), certainty):
+        if not isinstance(number, int | float) or isinstance(number, bool):
+            raise ImportFormatError(f"its times and certainty must be numbers, as in {form}, got {json_type(number)}")
+    (subject, predicate, thing), (origin, by, event) = statement, source
+    texts = {
+        "id": id,
+        "subject": subject,
+        "predicate": predicate,
+        "object": thing,
+        "person or module": by,
+        "event": event,
+    }
+    for name, value in texts.items():
+        if not isinstance(value, str) and not (value is None and name in ("object", "event")):
+            raise ImportFormatError(f"its {name} must be a text, got {json_type(value)}")
+    origins = [each.value for each in Origin]
+    if origin not in origins:
+        raise ImportFormatError(f"its origin must be one of {', '.join(origins)}, got {json.dumps(origin):.60}")
     unknown = (-math.inf, math.inf, -math.inf, math.inf)
     first, last, earliest, latest = (u if end is None else float(end) for end, u in zip(ends, unknown, strict=True))
     return episodic(

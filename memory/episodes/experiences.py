@@ -91,10 +91,9 @@ def start_recording(board: Blackboard, name: str, at: float, by: str) -> str:
     Raises
     ------
     EpisodeError
-        If there is an experience of this name.
+        If the name is blank, or there is an experience of this name.
     """
-    if board.holding(Pattern(name, RECORDED)):
-        raise EpisodeError(f"there is an experience '{name}' already; choose another name")
+    _require_new(board, name)
     id = board.new_id("e")
     board.add(episodic(id, (name, RECORDED), start=at, source=Source(Origin.INFERRED, by)), by=by)
     return id
@@ -189,13 +188,20 @@ def put_episode(
     Raises
     ------
     EpisodeError
-        If there is an experience of this name, or a fluent cannot be written.
+        If the name is blank, there is an experience of this name, or a fluent cannot be written.
     """
-    if board.holding(Pattern(name, RECORDED)):
-        raise EpisodeError(f"there is an experience '{name}' already; choose another name")
+    _require_new(board, name)
     source = Source(Origin.INFERRED, by)
     marker = episodic(board.new_id("e"), (name, RECORDED), start=start, finish=finish, source=source)
     return board.write(Add(marker), *map(Add, fluents), by=by)
+
+
+def _require_new(board: Blackboard, name: str) -> None:
+    """Check the name of a new experience; raise EpisodeError if it is not a name, or is in use."""
+    if not name.strip() or not name.isprintable():
+        raise EpisodeError(f"the name of an experience must be printable text that is not blank, got {name!r:.60}")
+    if board.holding(Pattern(name, RECORDED)):
+        raise EpisodeError(f"there is an experience '{name}' already; choose another name")
 
 
 def without_lessons(board: Holding, lessons: Collection[str]) -> tuple[Change, ...]:

@@ -26,6 +26,8 @@ from deixis.perception.errors import CloudError
 
 MAX_PIXELS = 2**25
 """Number of pixels of the largest depth image."""
+MAX_ZOOM = 1000
+"""Largest focal length, as a multiple of the size of the image."""
 _MAX_JSON = 2**16
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -49,7 +51,8 @@ class Intrinsics:
     Raises
     ------
     CloudError
-        If a size, a focal length or the scale is not positive, or a number is not finite.
+        If a size or the scale is not positive, a focal length is below 1 pixel or above :data:`MAX_ZOOM` times the
+        size of the image, or a number is not finite.
     """
 
     width: int
@@ -66,6 +69,11 @@ class Intrinsics:
         positive = (self.fx, self.fy, 1.0 if self.depth_scale is None else self.depth_scale)
         if not all(math.isfinite(value) for value in (*positive, self.cx, self.cy)) or min(positive) <= 0:
             raise CloudError("fx, fy and depth_scale must be above 0, and all numbers must be finite")
+        if not max(self.width, self.height) * MAX_ZOOM >= max(self.fx, self.fy) >= min(self.fx, self.fy) >= 1:
+            raise CloudError(
+                f"fx and fy must be in pixels, from 1 to {MAX_ZOOM} times the size of the image, got {self.fx:g} and"
+                f" {self.fy:g}"
+            )
 
 
 def read_intrinsics(path: str | Path) -> Intrinsics:

@@ -33,11 +33,12 @@ STARTS_FIRST = 0b0000000011111
 """Mask of the Allen relations in which the first fluent starts before the second one."""
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@dataclass(frozen=True, slots=True)
 class Step:
     """A kind of fluent: of a thing, with a predicate and an object, where these are not None.
 
-    ``number`` counts equal steps of one activity in the order in which they start, from 1.
+    ``number`` counts equal steps of one activity in the order in which they start, from 1. Steps are ordered by these
+    parts; a part that is None comes first.
     """
 
     thing: str
@@ -63,6 +64,14 @@ class Step:
             and self.predicate in (None, other.predicate)
             and self.object in (None, other.object)
         )
+
+    def __lt__(self, other: Step) -> bool:
+        """Return whether this step comes before another one."""
+        first, second = (
+            (each.thing, each.predicate or "", each.object or "", each.number, each.predicate is not None)
+            for each in (self, other)
+        )
+        return first < second
 
     def __str__(self) -> str:
         words = " ".join(part for part in (self.thing, self.predicate, self.object) if part)
@@ -181,7 +190,7 @@ def box_of(statement: Statement) -> tuple[float, ...] | None:
         return None
     try:
         corners = tuple(map(float, json.loads(statement.object)))
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, OverflowError, RecursionError):
         return None
     return corners if len(corners) in (4, 6) and all(map(math.isfinite, corners)) else None
 

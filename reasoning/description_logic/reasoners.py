@@ -17,7 +17,6 @@ without it otherwise.
 
 from __future__ import annotations
 
-import math
 import re
 import subprocess
 import tempfile
@@ -28,6 +27,7 @@ from enum import StrEnum
 from importlib.util import find_spec
 from pathlib import Path
 
+from deixis.deadline import LONGEST
 from deixis.reasoning.description_logic.axioms import split_axioms
 from deixis.reasoning.description_logic.reasoner_output import Hierarchy, hermit_facts, pellet_facts
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples, write_ntriples
@@ -335,7 +335,7 @@ def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], ti
         command = _java([*class_options(_folder(reasoner)), *_arguments(reasoner, options, files)])
         try:
             # run() kills the process at its time limit, or when this process is interrupted
-            timeout = None if math.isinf(time_limit) else time_limit
+            timeout = None if time_limit > LONGEST else time_limit
             done = subprocess.run(
                 command, capture_output=True, cwd=scratch, timeout=timeout, check=False, preexec_fn=tied_to_parent()
             )

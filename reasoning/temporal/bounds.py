@@ -39,9 +39,12 @@ def to_ticks(seconds: float) -> int:
         If the time is not finite, or farther away than ``MAX_SECONDS``.
     """
     if not math.isfinite(seconds):
-        raise SettingError(f"a time must be a finite number of seconds, got {seconds}")
+        kind = "NaN" if math.isnan(seconds) else "infinity"  # without its sign: a lower bound comes here negated
+        raise SettingError(f"a time must be a finite number of seconds, got {kind}")
     if abs(seconds) > MAX_SECONDS:
-        raise SettingError(f"a time of {seconds:g} s is beyond {MAX_SECONDS:g} s; is the unit or the origin right?")
+        raise SettingError(
+            f"a time of {abs(seconds):g} s from the origin is beyond {MAX_SECONDS:g} s; is the unit right?"
+        )
     return round(Fraction(seconds) * TICKS)
 
 

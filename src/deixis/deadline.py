@@ -48,6 +48,9 @@ class Clock:
 CLOCK = Clock()
 """Clock of all deadlines of a process."""
 
+LONGEST = 1_000_000.0
+"""Longest time limit in seconds, 11 days; a longer one counts as none, because the system's waits cannot be as long."""
+
 
 @contextmanager
 def clock_stopped() -> Iterator[None]:
@@ -104,14 +107,14 @@ class Deadline:
         Parameters
         ----------
         seconds
-            Seconds from now; None means no limit.
+            Seconds from now; None, and more than :data:`LONGEST`, mean no limit.
 
         Returns
         -------
         Deadline
             The deadline.
         """
-        return cls(math.inf if seconds is None else CLOCK.now() + seconds)
+        return cls(math.inf if seconds is None or seconds > LONGEST else CLOCK.now() + seconds)
 
     @classmethod
     def never(cls) -> Self:

@@ -1,7 +1,9 @@
-"""Read text files of users within limits: never a folder or a device, and never more than a stated size."""
+"""Read text files of users within limits, never a folder or a device; replace text files in one step."""
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import os
 import stat
 from collections.abc import Iterator
@@ -78,6 +80,72 @@ def read_lines(
             if len(line) > most:
                 raise error(f"{file}:{number}: a line must have at most {most:,} characters; split it")
             yield line
+
+
+@contextmanager
+def changing(file: str | Path) -> Iterator[None]:
+    """Keep other processes that call this function from changing the files of a folder inside the block.
+
+    Parameters
+    ----------
+    file
+        The file that is read, changed and written. The lock is that of its folder, because :func:`replace_text` makes
+        a new file. Where the folder does not exist or cannot be locked, there is no lock.
+
+    Yields
+    ------
+    None
+        Nothing; the lock ends with the block.
+    """
+    try:
+        folder = os.open(Path(file).resolve().parent, os.O_RDONLY)
+    except OSError:
+        yield
+        return
+    try:
+        with contextlib.suppress(OSError):
+            fcntl.flock(folder, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(folder)
+
+
+def replace_text(file: str | Path, text: str) -> None:
+    """Write a text as a UTF-8 file in one step, so that a full disk or the end of the program leaves the earlier file.
+
+    Parameters
+    ----------
+    file
+        The file, whose folder exists. A link is followed, and the permissions of an earlier file stay. A pipe or a
+        device is written to directly.
+    text
+        The text; its line ends are written as they are.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; the error names it.
+    """
+    try:
+        _replace_text(Path(file), text)
+    except OSError as error:  # which may name the draft, or nothing
+        reason = error.strerror if Path(file).parent.is_dir() else "there is no such folder; make it first"
+        raise OSError(error.errno, reason, os.fspath(file)) from error
+
+
+def _replace_text(file: Path, text: str) -> None:
+    if file.exists() and not file.is_file():
+        file.write_text(text, encoding="utf-8", newline="")
+        return
+    target = file.resolve()
+    draft = target.with_name(f".{target.name}.{os.getpid()}")
+    try:
+        draft.write_text(text, encoding="utf-8", newline="")
+        if target.exists():
+            draft.chmod(target.stat().st_mode & 0o7777)
+        draft.replace(target)
+    finally:
+        draft.unlink(missing_ok=True)
 
 
 @contextmanager

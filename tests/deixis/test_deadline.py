@@ -34,7 +34,7 @@ def test_a_deadline_passes_when_its_seconds_are_over(set_clock: Callable[[float]
 
 
 def test_no_limit_never_passes_and_shares_to_no_limit() -> None:
-    for deadline in (Deadline.never(), Deadline.after(None), Deadline.never().share(0.1)):
+    for deadline in (Deadline.never(), Deadline.after(None), Deadline.after(1e300), Deadline.never().share(0.1)):
         assert deadline.left == math.inf and not deadline.passed
 
 

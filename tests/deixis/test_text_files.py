@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import threading
 from collections.abc import Callable
@@ -10,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from deixis.errors import DeixisError, OntologyError
-from deixis.text_files import read_lines, read_text
+from deixis.text_files import read_lines, read_text, replace_text
 
 READERS: list[Callable[[Path], object]] = [read_text, lambda file: list(read_lines(file))]
 
@@ -59,3 +60,38 @@ def test_texts_and_lines_have_a_largest_length(tmp_path: Path) -> None:
         read_text(file, OntologyError, most=7)
     with pytest.raises(OntologyError, match=r"long.txt:2: a line must have at most 4 characters"):
         list(read_lines(file, OntologyError, most=4))
+
+
+def test_a_text_is_replaced_in_one_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, link = tmp_path / "a.json", tmp_path / "link.json"
+    replace_text(file, "old\r\n")
+    file.chmod(0o640)
+    link.symlink_to(file)
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", full)
+        with pytest.raises(OSError, match="No space"):
+            replace_text(link, "new")
+    assert file.read_bytes() == b"old\r\n" and len(list(tmp_path.iterdir())) == 2
+    replace_text(link, "new")
+    assert link.is_symlink() and file.read_text("utf-8") == "new" and file.stat().st_mode & 0o777 == 0o640
+
+
+def test_a_text_is_written_directly_to_a_pipe(tmp_path: Path) -> None:
+    source, target = os.pipe()
+    replace_text(f"/dev/fd/{target}", "text")
+    os.close(target)
+    assert os.read(source, 10) == b"text"
+    os.close(source)
+
+
+def test_an_error_of_writing_names_file_and_missing_folder(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="there is no such folder; make it first") as caught:
+        replace_text(tmp_path / "missing" / "a.txt", "text")
+    assert caught.value.filename == str(tmp_path / "missing" / "a.txt")
+    with pytest.raises(OSError, match="Is a directory") as caught:
+        replace_text(tmp_path, "text")
+    assert caught.value.filename == str(tmp_path)

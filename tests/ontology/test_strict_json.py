@@ -40,3 +40,22 @@ def test_mistakes_in_a_file_of_json_lines_have_their_line() -> None:
         parse_json_line('\ufeff[1,{"a":', "t.jsonl", 3, DeixisError, None)
     with pytest.raises(DeixisError, match=r"^t.jsonl:3: the JSON is nested too deeply"):
         parse_json_line("[" * 50_000, "t.jsonl", 3, DeixisError, None)
+
+
+@pytest.mark.parametrize("digits", ["9" * 309, "-" + "9" * 309, "9" * 5000], ids=len)
+@pytest.mark.parametrize("no_number", [None, "is not a number"])
+def test_whole_numbers_that_no_double_holds_are_refused(digits: str, no_number: str | None) -> None:
+    with pytest.raises(DeixisError, match=r"^t\.json: a number of \d+ digits is too large: at most 308 "):
+        parse_json(f"[{digits}]", "t.json", DeixisError, no_number)
+
+
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_the_largest_whole_number_converts_to_a_double(sign: str) -> None:
+    (number,) = parse_json(f"[{sign}{'9' * 308}]", "t.json", DeixisError, None)
+    assert abs(float(number)) == 1e308
+
+
+def test_numbers_that_overflow_are_refused_where_infinity_is() -> None:
+    with pytest.raises(DeixisError, match=r"^t\.json: the number -1e400 is too large"):
+        parse_json('{"x": -1e400}', "t.json", DeixisError, "is not a number")
+    assert parse_json("[1e400]", "t.json", DeixisError, None) == [float("inf")]

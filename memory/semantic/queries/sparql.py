@@ -209,6 +209,9 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     if len(sparql) > MAX_LENGTH:
         raise QueryError(f"query: it must have at most {MAX_LENGTH:,} characters, got {len(sparql):,}")
     text = _Text(sparql)
+    half = next((place for place, character in enumerate(text.text) if "\ud800" <= character <= "\udfff"), None)
+    if half is not None:
+        raise text.error(half, "this is not a character; write the query in UTF-8")
     found = list(islice(tokens(text.text), MAX_TOKENS + 1))
     if len(found) > MAX_TOKENS:
         raise text.error(found[-1].start, f"the query must have at most {MAX_TOKENS:,} words and signs")

@@ -112,7 +112,7 @@ class _Evaluator:
             if "open" in request:
                 return self.open(request["open"])
             limit = self._at_start + request["memory"]
-            with contextlib.suppress(OSError, ValueError):  # systems other than Linux may refuse
+            with contextlib.suppress(OSError, ValueError, OverflowError):  # too large, or refused outside Linux
                 resource.setrlimit(resource.RLIMIT_DATA, (limit, resource.RLIM_INFINITY))
             return self.query(request)
         except MemoryError:

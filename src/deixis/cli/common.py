@@ -77,10 +77,12 @@ def print_written(*files: Path | None, aside: bool = False) -> None:
 
 def print_or_write(text: str, out: Path | None) -> None:
     """Print a text as it is, or write it to a file and print the name of the file."""
+    from deixis.text_files import replace_text
+
     if out is None:
         sys.stdout.write(text)
     else:
-        out.write_text(text, encoding="utf-8")
+        replace_text(out, text)
         print_written(out)
 
 

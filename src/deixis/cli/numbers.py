@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from typing import Any
 
 import typer
@@ -23,14 +24,17 @@ class _InWords:
         return f"at least {self.min:g}" if self.max is None else f"{self.min:g} to {self.max:g}"
 
     def convert(self: Any, value: Any, parameter: Any, context: Any) -> Any:
-        """Return the number that a text stands for; fail with what is allowed and what was given."""
+        """Return the number that a text stands for, except NaN; fail with what is allowed and what was given."""
         try:
-            return super().convert(value, parameter, context)  # type: ignore[misc]
+            number = super().convert(value, parameter, context)  # type: ignore[misc]
         except typer.BadParameter:
-            allowed = _NOUNS[self.name]
-            if "range" in self.name:
-                allowed += f" {'from' if None not in (self.min, self.max) else 'of'} {self._describe_range()}"
-            self.fail(f"must be {allowed}, got {visible_line(str(value))}", parameter, context)
+            number = math.nan
+        if not math.isnan(number):
+            return number
+        allowed = _NOUNS[self.name]
+        if "range" in self.name:
+            allowed += f" {'from' if None not in (self.min, self.max) else 'of'} {self._describe_range()}"
+        self.fail(f"must be {allowed}, got {visible_line(str(value))}", parameter, context)
 
 
 def say_numbers_in_words(command: Any) -> None:
@@ -44,7 +48,14 @@ def say_numbers_in_words(command: Any) -> None:
     for subcommand in getattr(command, "commands", {}).values():
         say_numbers_in_words(subcommand)
     for parameter in command.params:
-        if getattr(parameter.type, "name", None) in _NOUNS:
-            kind = copy.copy(parameter.type)
-            kind.__class__ = type(type(kind).__name__, (_InWords, type(kind)), {})
-            parameter.type = kind
+        parameter.type = _in_words(parameter.type)
+
+
+def _in_words(kind: Any) -> Any:
+    """Return a numeric type, or a tuple of such types, that says in words what it allows; another type as it is."""
+    kind = copy.copy(kind)
+    if hasattr(kind, "types"):
+        kind.types = [_in_words(each) for each in kind.types]
+    elif getattr(kind, "name", None) in _NOUNS:
+        kind.__class__ = type(type(kind).__name__, (_InWords, type(kind)), {})
+    return kind

@@ -225,6 +225,7 @@ class ProcessRunner(Runner):
             stdout=subprocess.PIPE,
             text=True,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            start_new_session=True,  # Ctrl-C reaches the owner alone, which ends this process
         )
         assert process.stdin is not None
         process.stdin.write(json.dumps({**self._where, "since": self._position}) + "\n")
@@ -386,6 +387,15 @@ class _Feed:
 
 def main() -> None:
     """Run one module in this process until its standard input ends; the first line of the input says which."""
+    try:
+        _run()
+    except (MemoryWriteError, BrokenPipeError) as error:  # the owner has ended, or does not answer
+        with contextlib.suppress(OSError):
+            _say(str(error))
+        os._exit(1)
+
+
+def _run() -> None:
     where = json.loads(sys.stdin.readline())
     module = ModuleSpec(where["factory"], where["settings"]).module()
     session, token = _open(connect=[where["endpoint"]]), where["token"]

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
+import typer
 from commands import deixis
+
+from deixis.cli.app import COMMANDS, app
 
 
 @pytest.mark.parametrize(
@@ -34,3 +39,29 @@ def test_a_number_within_the_range_is_taken() -> None:
     code, out, _ = deixis("simulate", "--seed", "0", "--help")
     assert code == 0
     assert "at least 0" in out
+
+
+def options_of_numbers() -> list[tuple[str, str, int]]:
+    """Return each command with each of its options that take numbers, and how many numbers the option takes."""
+    found = []
+
+    def visit(command: Any, path: tuple[str, ...]) -> None:
+        for name, subcommand in getattr(command, "commands", {}).items():
+            visit(subcommand, (*path, name))
+        for parameter in command.params:
+            kinds = [kind.name for kind in getattr(parameter.type, "types", [parameter.type])]
+            if any(kind.startswith(("int", "float")) for kind in kinds) and parameter.opts[0].startswith("-"):
+                found.append((" ".join(path), parameter.opts[-1], len(kinds)))
+
+    group: Any = typer.main.get_group(app)
+    for name in COMMANDS:
+        visit(group.get_command(None, name), (name,))
+    return found
+
+
+@pytest.mark.parametrize(("command", "option", "numbers"), options_of_numbers())
+@pytest.mark.parametrize("given", ["nan", "-NaN", "x"])
+def test_no_option_takes_what_is_not_a_number(command: str, option: str, numbers: int, given: str) -> None:
+    code, out, err = deixis(*command.split(), *[option, *[given] * numbers])
+    assert (code, out) == (2, "")
+    assert option in err and "must be a" in err and f"got {given}" in err

@@ -66,7 +66,11 @@ def test_intrinsics_are_read_from_json(tmp_path: Path) -> None:
         ({"depth_scale": -1}, "fx, fy and depth_scale must be above 0"),
         ({"height": 0}, "an image must have 1 to 33554432 pixels, got 3 by 0"),
         ({"height": 10**9}, "an image must have 1 to 33554432 pixels, got 3 by 1000000000"),
-        ({"fx": 10**400}, "'fx' must be a number"),
+        ({"fx": 10**400}, "a number of 401 digits is too large"),
+        ({"fx": 10**300}, "'fx' must be a number"),
+        ({"fx": 1e-320}, "fx and fy must be in pixels, from 1 to 1000 times the size of the image"),
+        ({"fx": 0.002}, "fx and fy must be in pixels, from 1 to 1000 times the size of the image, got 0.002 and 4"),
+        ({"fy": 3001}, "fx and fy must be in pixels"),
     ],
 )
 def test_impossible_intrinsics_are_refused(change: dict[str, object], message: str, tmp_path: Path) -> None:

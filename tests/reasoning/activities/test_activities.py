@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import copy
+import json
 import random
+import threading
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +21,7 @@ from deixis.grammar.activities import (
     read_activity,
     told_activity,
 )
-from deixis.reasoning.activities.activity import Activity, StepSequence
+from deixis.reasoning.activities.activity import Activity, StepSequence, box_of
 from deixis.reasoning.activities.grounding import ground_activity, recognise_activity
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
@@ -113,17 +117,107 @@ def test_learned_activities_are_recognised_with_noise(tmp_path: Path) -> None:
     assert recognise(laid("hat coat"), known).name is None
 
 
-def test_a_broken_file_of_activities_is_refused(tmp_path: Path) -> None:
-    for text in (
-        "{",
-        "{}",
-        '{"activities": [{"name": "x", "steps": [["a"]], "counts": [], "present": [], "examples": 1}]}',
-    ):
-        (tmp_path / "known.json").write_text(text)
-        with pytest.raises(ActivityTextError, match=r"not a file of activities|json:1:2: this is not valid JSON"):
-            read_activities(tmp_path / "known.json")
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("{", "json:1:2: this is not valid JSON"),
+        ("{}", "must be an object with the list 'activities'"),
+        ("[]", "must be an object with the list 'activities'"),
+        ('{"activities": [7]}', "activity 1: it must be an object, got a number"),
+        ('{"activities": [{"name": "x"}]}', "activity 'x': the key 'examples, steps, present, counts' is missing"),
+    ],
+)
+def test_a_file_without_activities_is_refused(tmp_path: Path, text: str, reason: str) -> None:
+    (tmp_path / "known.json").write_text(text)
+    with pytest.raises(ActivityTextError) as caught:
+        read_activities(tmp_path / "known.json")
+    assert reason in str(caught.value)
+
+
+KNOWN = {
+    "name": "tea",
+    "examples": 2,
+    "steps": [["cup", "laid", None, 1], ["spoon", None, "table", 1]],
+    "present": [2.0, 1],
+    "layings": [[["cup", [0.1, 0.2]], ["spoon", None]]],
+    "counts": [[0, 1, 0, 1.0]],
+}
+VALUES: list[object] = [None, True, -1, 0.5, 10**300, "", "7", [], [None], [[1]], {}, {"a": 1}]
+
+
+def places_in(data: object, before: tuple[str | int, ...] = ()) -> list[tuple[str | int, ...]]:
+    """Return the place of every value in some JSON."""
+    parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    return [before, *(place for key, part in parts for place in places_in(part, (*before, key)))]
+
+
+@pytest.mark.parametrize("place", places_in(KNOWN)[1:], ids=str)
+@pytest.mark.parametrize("value", VALUES, ids=str)
+def test_a_wrong_value_never_breaks_the_reader(tmp_path: Path, place: tuple[str | int, ...], value: object) -> None:
+    entry: Any = copy.deepcopy(KNOWN)
+    inner = entry
+    for key in place[:-1]:
+        inner = inner[key]
+    inner[place[-1]] = value
+    file = tmp_path / "known.json"
+    file.write_text(json.dumps({"activities": [entry]}))
+    try:
+        learn("tea", [laid("cup spoon")], file)
+    except ActivityTextError as error:
+        message = str(error)
+        assert json.loads(file.read_text()) == {"activities": [entry]}  # nothing is lost
+    else:
+        message = ""
+        recognise(laid("cup spoon"), file)
+    assert not message or message.startswith(f"{file}: not a file of activities: activity ")
+
+
+def test_steps_with_and_without_an_object_are_learned_together() -> None:
+    parts = [("cup", "laid"), ("cup", "laid", "table"), ("cup", "kept", "table")]
+    seen = StepSequence.of(Fluent(f"f{at}", Statement(*part), Bounds(at, at)) for at, part in enumerate(parts))
+    activity = Activity.learned("tea", [seen])
+    assert [str(step) for step in activity.steps] == ["cup kept table", "cup laid", "cup laid table"]
+    assert (activity + activity).steps == activity.steps
+
+
+def test_a_file_that_names_an_activity_twice_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "known.json"
+    file.write_text(json.dumps({"activities": [KNOWN, KNOWN]}))
+    with pytest.raises(ActivityTextError, match="activity 'tea': an earlier one has this name; rename one of them"):
+        read_activities(file)
+
+
+def test_an_activity_without_a_name_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingError, match="the name of an activity must have at least one word"):
+        learn(" ", [laid("cup spoon")], tmp_path / "known.json")
+    assert not (tmp_path / "known.json").exists()
 
 
 def test_an_empty_sequence_is_none_of_the_activities() -> None:
     dinner = Activity.learned("dinner", [laid("plate fork")])
     assert recognise_activity([dinner], laid("")).name is None
+
+
+@pytest.mark.parametrize(
+    "box", ["[" * 50_000, f"[{'9' * 400}, 1, 2, 3]", "[1e400, 1, 2, 3]", '{"a": 1}', "null", "[true]", "x"]
+)
+def test_a_place_that_is_not_a_box_is_no_place(box: str) -> None:
+    assert box_of(Statement("cup", "at", box)) is None
+    assert StepSequence.of([Fluent("f1", Statement("cup", "at", box), Bounds(1, 1))]).laying[0].place is None
+
+
+def test_examples_that_are_learned_at_once_are_all_kept(tmp_path: Path) -> None:
+    known = tmp_path / "known.json"
+    threads = [threading.Thread(target=learn, args=("tea", [laid("cup spoon")], known)) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert [each.examples for each in read_activities(known)] == [8]
+    assert list(tmp_path.iterdir()) == [known]
+
+
+@pytest.mark.parametrize(("said", "number"), [("nine", 9), ("twelve", 12), ("the seven", 7), ("10", 10), ("two", 2)])
+def test_a_number_of_things_is_never_a_part_of_their_name(said: str, number: int) -> None:
+    ((item,),) = read_activity(f"first {said} cups")
+    assert (item.kind, item.count) == ("cup", number)

@@ -160,9 +160,10 @@ def _fitted(
 def _write(learned: LearnedWords, out: Path) -> None:
     from deixis.errors import DeixisError
     from deixis.ontology.models.relation_triples import models_to_turtle
+    from deixis.text_files import replace_text
 
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text(models_to_turtle(learned.models.models.values()), encoding="utf-8")
+        replace_text(out, models_to_turtle(learned.models.models.values()))
     except OSError as error:
         raise DeixisError(f"{out}: cannot write the models: {error.strerror}") from error

@@ -22,6 +22,7 @@ from deixis.cli.common import (
     print_lines,
     print_written,
     require_plot,
+    require_writable,
     tell_of_compiling,
 )
 from deixis.cli.completion import complete_layouts
@@ -48,17 +49,18 @@ def check(
     from deixis.report.json_answers import check_to_dict
     from deixis.report.layouts.script import check_lines
     from deixis.session import Session
+    from deixis.text_files import replace_text
     from deixis.workflows.grounding.check import check as run
     from deixis.workflows.layouts.read import load_scene
 
     require_plot(plot)
+    require_writable([report, plot], [layout, scene])
     seen = load_scene(scene, hide_labels, image)
     tell_of_compiling()
     with Session(memory) as session, time_bar("grounding", time_limit):
         checked = run(layout, seen, time_limit, None if no_memory else session.knowledge_store)
     if report is not None:
-        report.parent.mkdir(parents=True, exist_ok=True)
-        report.write_text(checked.report, encoding="utf-8")
+        replace_text(report, checked.report)
     if plot is not None:
         from deixis.plots.check import plot_check
 

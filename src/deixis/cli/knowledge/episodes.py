@@ -159,8 +159,11 @@ def update(
     as_json: AsJson = False,
 ) -> None:
     """Give fluents new values, by their ids or by a pattern and a window."""
+    from deixis.errors import DeixisError
     from deixis.memory.episodes.fluents.changes import Update
 
+    if certainty is None and start is None and finish is None:
+        raise DeixisError("there is no new value; give --certainty, --start or --finish")
     with _board(memory) as board:
         before = board.sequence
         chosen = ids or []

@@ -126,6 +126,8 @@ def import_(
 
     if not dump.exists():
         raise DeixisError(f"{dump}: there is no such file")
+    if dump.is_dir():
+        raise DeixisError(f"{dump}: this is a folder; name a file that 'deixis memory export' wrote")
     if is_archive(dump):
         where = memory or default_memory()
         with progress_bar("importing") as progress:
@@ -138,6 +140,8 @@ def import_(
         with Session(memory) as session:
             session.import_(dump)
             _print_imported(dump, session.path, "concepts", as_json)
+    elif dump.suffix.lower() == ".zip":
+        raise DeixisError(f"{dump}: this is not an archive of views; 'deixis memory export --format views' writes one")
     else:
         endings = ", ".join((*FORMATS, ".zip (views)"))
         raise DeixisError(f"{dump}: unknown format; its name must end in {endings} or {ENDING}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -24,28 +23,17 @@ def fmt(
     from deixis.errors import DeixisError
     from deixis.grammar.layout.format import format_script
     from deixis.grammar.layout.parser import read_layout
+    from deixis.text_files import replace_text
 
     if write and check:
         raise DeixisError("fmt: --check and --write exclude each other")
     formatted = format_script(read_layout(script))
     same = formatted == Path(script).read_bytes().decode("utf-8-sig")
     if write and not same:
-        _replace(Path(script), formatted)
+        replace_text(script, formatted)
     if as_json:
         print_json({"file": script, "canonical": same, "text": formatted})
     elif not check and not write:
         sys.stdout.write(formatted)
     if check and not same:
         raise typer.Exit(NO)
-
-
-def _replace(path: Path, text: str) -> None:
-    """Replace a file in one step, so that a crash leaves the old one; follow a link, and keep the file's mode."""
-    target = path.resolve()
-    draft = target.with_name(f".{target.name}.{os.getpid()}")
-    try:
-        draft.write_text(text, encoding="utf-8", newline="")
-        draft.chmod(target.stat().st_mode & 0o7777)
-        draft.replace(target)
-    finally:
-        draft.unlink(missing_ok=True)

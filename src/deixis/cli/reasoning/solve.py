@@ -91,10 +91,11 @@ def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: b
     """Print what did not come with the verdicts: JSON, or networks with the findings as comments."""
     from deixis.grammar.formats.networks import network_lines
     from deixis.report.reasoning.solve import solved_lines, solved_to_dict
+    from deixis.text_files import replace_text
 
     shown = [line for each in solved if each.shown for line in network_lines(each.shown, each.text.comment)]
     if out is not None:
-        out.write_text("".join(f"{line}\n" for line in shown), encoding="utf-8")
+        replace_text(out, "".join(f"{line}\n" for line in shown))
     if as_json:
         print_json({"file": file, "networks": [solved_to_dict(each) for each in solved]})
         return

@@ -117,6 +117,11 @@ def apprentice(
     from deixis.experiments.apprentice.report import lines, to_dict
     from deixis.experiments.apprentice.run import ApprenticePlan, run
 
+    if story is not None:
+        from deixis.experiments.apprentice.story import FIRST
+        from deixis.plots.figure import require_picture
+
+        require_picture(story / FIRST)  # before the tables, which take minutes
     plan = ApprenticePlan(tables=tables, seed=seed, noise=noise)
     with step_bar(plan.steps) as tick:
         found = run(plan, tick=lambda: tick("tables"))

@@ -84,6 +84,7 @@ def run(
     from deixis.robot.live.story import StorySettings
 
     settings = StorySettings(source, layout, seed, rate, _text(intrinsics), grows, _text(words), live, camera)
+    settings.check()
     view = not (plain or as_json) and sys.stdout is not None and sys.stdout.isatty()
     if story is not None:
         require_picture(story / OVERVIEW)  # before the story, which happens once

@@ -40,6 +40,9 @@ LEGEND = (
 )
 """Explanation of the pictures on the page."""
 
+FIRST = "frame01.png"
+"""Name of the first key frame."""
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -69,7 +72,7 @@ def write_story(plan: ApprenticePlan, folder: Path) -> tuple[Frame, ...]:
     DeixisError
         If the folder cannot be written.
     """
-    require_picture(folder / "frame01.png")
+    require_picture(folder / FIRST)
     small = replace(plan, tables=STORY_TABLES, first_tables=1)
     frames: list[Frame] = []
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import exp
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import count
 from deixis.ontology.models.relations import RelationModel, RelationModels
 from deixis.ontology.relations.allen import SYMBOLS
 from deixis.ontology.relations.relation import Relation, Relations
@@ -201,7 +202,7 @@ def learned_reference_lines(learned: LearnedReference) -> list[str]:
         weights; the examples left out.
     """
     before, after = learned.right
-    lines = [f"learned from {learned.descriptions} descriptions: {before} were right before, {after} are now"]
+    lines = [f"learned from {count(learned.descriptions, 'description')}; right before: {before}, now: {after}"]
     lines += [f"{name:<24} changed by up to {step:.2f}" for name, step in [*learned.changed.items()][:MAX_LISTED]]
     return lines + [f"left out    {why}" for why in learned.left_out]
 

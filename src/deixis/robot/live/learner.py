@@ -18,6 +18,7 @@ from deixis.memory.errors import MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line
+from deixis.reasoning.errors import NothingFoundError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.diary import CALLED, FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
@@ -48,6 +49,9 @@ _NAME = re.compile(
     re.IGNORECASE,
 )
 """Answer to the question for the name of a layout: a name of up to four words, or that it has none."""
+
+NOT_FOUND = "I found none of these things on the table, so I learned nothing."
+"""Answer to a description of which the robot sees no object."""
 
 NOT_SEEN = "I have not seen a table yet."
 """Answer to what is said of a table before the first one lay still."""
@@ -257,6 +261,9 @@ class Learner(Module):
             result = self.robot.told(text, by, at, fluent.source.event)
         except MemoryWriteError:
             raise
+        except NothingFoundError:
+            self._say(NOT_FOUND, at, board)
+            return
         except DeixisError as error:
             seen = self.robot.sees_a_table
             self._say(f"I did not understand: {str(error).splitlines()[0]}" if seen else NOT_SEEN, at, board)

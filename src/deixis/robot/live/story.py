@@ -19,12 +19,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from deixis.answers import count
 from deixis.grammar.utterances import Utterance
 from deixis.ontology.things.kinds import plain_name, with_article
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.scene import Scene
 from deixis.perception.tracking.frames.frame import Frame
 from deixis.perception.tracking.frames.stream import CloudSource, LatestFrames
+from deixis.reasoning.errors import SettingError
 from deixis.robot.modules import made
 
 if TYPE_CHECKING:
@@ -159,6 +161,51 @@ class StorySettings:
     live: bool = False
     camera: str = "sway"
 
+    def check(self) -> None:
+        """Check the settings before the robot starts, and read the files that they name except clouds.
+
+        Raises
+        ------
+        SettingError
+            If a setting does not go with the source.
+        ScriptError, UtteranceError, CloudError
+            If the script, the words or the intrinsics cannot be read.
+        SimulationError
+            If there is no such path of the camera, or a script has too few things.
+        """
+        from deixis.grammar.utterances import read_utterances
+        from deixis.perception.clouds.depth import read_intrinsics
+        from deixis.perception.simulator.films.camera_paths import camera_path
+
+        camera_path(self.camera)  # an unknown path is an error in every story
+        given = {"layout": self.layout is not None, "intrinsics": self.intrinsics is not None, "grows": self.grows}
+        simulated = self.source in SIMULATED
+        for setting, needs, fits in (
+            ("layout", "a simulated story", simulated),
+            ("intrinsics", "a folder of clouds", not (simulated or self._is_driver)),
+            ("grows", "a folder of clouds", not (simulated or self._is_driver)),
+        ):
+            if given[setting] and not fits:
+                raise SettingError(f"`{setting}` goes with {needs} only, not with '{self.source}'; leave it out")
+        if simulated:
+            _require_things(self._script(), 1)
+        if self.words is not None:
+            read_utterances(self.words)
+        if self.intrinsics is not None:
+            read_intrinsics(self.intrinsics)
+
+    @property
+    def _is_driver(self) -> bool:
+        """True if the source names the class of a camera driver."""
+        return self.source not in SIMULATED and not Path(self.source).exists() and ":" in self.source
+
+    def _script(self) -> Script:
+        """Return the script of the simulated table."""
+        from deixis.examples_data import example
+        from deixis.workflows.layouts.read import as_script
+
+        return as_script(self.layout or str(example("tea.layout")))
+
     def story(self) -> Story:
         """Return the story.
 
@@ -177,30 +224,27 @@ class StorySettings:
             If a file of words or skeletons has an error.
         SimulationError
             If no table can be laid as the script says, or there is no such path of the camera.
+        SettingError
+            If a setting does not go with the source.
         """
         from deixis.grammar.utterances import read_utterances
-        from deixis.perception.simulator.films.camera_paths import camera_path
         from deixis.perception.tracking.frames.stream import LatestFrames
 
-        camera_path(self.camera)  # an unknown path is an error in every story
-        driver = self.source not in SIMULATED and not Path(self.source).exists() and ":" in self.source
+        self.check()
         if self.source in SIMULATED:
-            from deixis.examples_data import example
-            from deixis.workflows.layouts.read import as_script
-
-            script = as_script(self.layout or str(example("tea.layout")))
+            script = self._script()
             if self.source == "laying":
                 found = laying_story(script, self.seed, self.rate, self.camera)
             else:
                 found = simulated_story(script, self.seed, self.rate)
-        elif driver:
+        elif self._is_driver:
             found = Story(made(self.source, CloudSource).frames())  # type: ignore[type-abstract]
         else:
             found = recorded_story(self.source, self.intrinsics, self.grows)
         if self.words is not None:
             words = sorted((*found.words, *read_utterances(self.words)), key=lambda utterance: utterance.at)
             found = replace(found, words=tuple(words))
-        if not (self.live or self.grows or driver):
+        if not (self.live or self.grows or self._is_driver):
             return found
         latest = LatestFrames(AtOwnSpeed(found.frames) if self.live else Frames(found.frames))
         return replace(found, frames=latest.frames(), live=latest)
@@ -301,8 +345,9 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     Raises
     ------
     SimulationError
-        If no table can be laid as the script says.
+        If no table can be laid as the script says, or it has fewer than two things on which nothing lies.
     """
+    from deixis.perception.errors import SimulationError
     from deixis.perception.simulator.cameras.camera import chair_camera
     from deixis.perception.simulator.films.motion import Bring, Rest, Stage
     from deixis.perception.simulator.laying import LaidTable, top_under, truth_scene
@@ -310,10 +355,13 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     from deixis.workflows.descriptions.tell import tell
     from deixis.workflows.layouts.lay_table import lay_script
 
+    _require_things(script, 2)
     rng = np.random.default_rng(seed)
     first, second = (lay_script(script, seed=seed + k).table for k in (0, 1))
     scene = truth_scene(first)
     free = [k for k, thing in enumerate(first.things) if not _supports_another(thing, first.things)]
+    if len(free) < 2:
+        raise SimulationError(f"{script.file}: the story needs at least two things on which nothing lies; state more")
     shown = sorted(rng.permutation(free)[:2].tolist())
     others = [k for k in free if k not in shown] or free
     forgotten, brought = (int(k) for k in (*rng.permutation(others), *shown)[:2])
@@ -396,6 +444,7 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     from deixis.perception.simulator.laying import top_under, truth_scene
     from deixis.workflows.layouts.lay_table import lay_script
 
+    _require_things(script, 1)
     rng = np.random.default_rng(seed)
     table = lay_script(script, seed=seed).table
     order = sorted(range(len(table.things)), key=lambda k: round(float(table.things[k].box[0, 2]), 3))
@@ -417,6 +466,16 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     path = camera_path(camera, seed)
     truth = StoryTruth(truth_scene(table), eye, laid=tuple(table.things[k].name for k in order), path=path)
     return Story(stage.film(top, eye, path).frames(rate, seed), tuple(words), (), truth)
+
+
+def _require_things(script: Script, least: int) -> None:
+    """Check that a script has things to lay; raise SimulationError otherwise."""
+    from deixis.perception.errors import SimulationError
+
+    if len(script.objects) < least:
+        raise SimulationError(
+            f"{script.file}: the story needs a script with at least {count(least, 'thing')}, got {len(script.objects)}"
+        )
 
 
 def _supports_another(thing: LaidThing, things: Iterable[LaidThing]) -> bool:

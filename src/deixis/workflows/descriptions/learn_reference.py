@@ -15,7 +15,7 @@ from deixis.errors import DeixisError, OntologyError
 from deixis.ontology.strict_json import parse_json
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import DescriptionError, SettingError
-from deixis.text_files import read_text
+from deixis.text_files import read_text, replace_text
 from deixis.workflows.descriptions.refer import (
     line_of_batch,
     model_with,
@@ -96,7 +96,8 @@ def learn_reference(
     before = prior or shipped_model()
     if not examples:
         more = f"; and {len(left_out) - 1} more lines" if len(left_out) > 1 else ""
-        raise DescriptionError("; ".join(("nothing to learn", *left_out[:1])) + more)
+        why = left_out[0] if left_out else 'there is no description; write lines {"text": …, "scene": …, "target": …}'
+        raise DescriptionError(f"nothing to learn; {why}{more}")
     unset = {name: np.zeros_like(values) for name, values in initial_weights(default_ontology().colours).items()}
     start = replace(before, weights={**unset, **before.weights})
     learned = replace(start, weights=fit(start, examples, strength, ITERATIONS))
@@ -160,7 +161,7 @@ def write_reference(model: Model, file: Path, source: str) -> None:
     data = {"source": source, "weights": named_weights(model.weights, default_ontology().colours)}
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+        replace_text(file, json.dumps(data, indent=1) + "\n")
     except OSError as error:
         raise DeixisError(f"{file}: cannot write the weights: {error.strerror}") from error
 

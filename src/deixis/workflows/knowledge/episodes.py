@@ -547,7 +547,7 @@ def _box(text: str) -> tuple[float, ...] | None:
 
     try:
         corners = np.array(json.loads(text), dtype=np.float64).reshape(2, -1)
-    except (ValueError, TypeError, RecursionError):
+    except (ValueError, TypeError, OverflowError, RecursionError):
         return None
     fits = corners.shape[1] in (2, 3) and np.isfinite(corners).all() and (corners[0] <= corners[1]).all()
     return tuple(corners.ravel().tolist()) if fits else None

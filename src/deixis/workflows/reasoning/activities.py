@@ -21,6 +21,7 @@ from deixis.reasoning.activities.grounding import (
 from deixis.reasoning.activities.prediction import LayingModel, Prediction
 from deixis.reasoning.errors import NothingFoundError, SettingError
 from deixis.reasoning.temporal.fluent import Fluent, Statement
+from deixis.text_files import changing
 
 if TYPE_CHECKING:
     from deixis.memory.episodes.blackboard import Blackboard
@@ -149,9 +150,20 @@ def learn(name: str, sources: Sequence[str | Path | StepSequence], known: str | 
     -------
     Activity
         The activity with all of its examples.
+
+    Raises
+    ------
+    SettingError
+        If the name is blank.
+    ActivityTextError
+        If the file of activities cannot be read or written.
     """
+    if not name.strip():
+        raise SettingError("the name of an activity must have at least one word, got none")
     activity = Activity.learned(name, [sequence_of(source) for source in sources])
-    if known is not None:
+    if known is None:
+        return activity
+    with changing(known):
         before = read_activities(known) if Path(known).exists() else ()
         same = [each for each in before if each.name == name]
         activity = same[0] + activity if same else activity

@@ -77,7 +77,7 @@ def test_words_learned_from_descriptions_are_used(tmp_path: Path) -> None:
         "learn-relation", "--descriptions", tmp_path / "said.jsonl", "--strength", "0.3", "-o", tmp_path / "words.json"
     )
     assert code == 0
-    assert "learned from 3 descriptions: 0 were right before, 3 are now" in out
+    assert "learned from 3 descriptions; right before: 0, now: 3" in out
     assert "left out    line 2: " in out and "there is no object 'o99'" in out
     _, out, _ = deixis("refer", "the bin near the door", STUDY, "--models", tmp_path / "words.json", "--json")
     assert before["target"] != "o14" and json.loads(out)["target"] == "o14"

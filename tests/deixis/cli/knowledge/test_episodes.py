@@ -89,6 +89,10 @@ def test_answers_are_printed_as_json(memory: Path) -> None:
         (("finish",), "by their ids, or else by --pattern"),
         (("delete", "f9"), "no fluent 'f9'"),
         (("record", "lunch", "--stop"), "no experience 'lunch'"),
+        (("record", " "), "the name of an experience must be printable text that is not blank"),
+        (("update", "f1"), "there is no new value; give --certainty, --start or --finish"),
+        (("add", "t1", "on", "t2", "--start", "1e300"), "a time of 1e+300 s from the origin is beyond 4e+09 s"),
+        (("add", "t1", "on", "t2", "--start", "inf"), "a finite number of seconds, got infinity"),
     ],
 )
 def test_bad_input_is_explained(memory: Path, command: tuple[str, ...], message: str) -> None:

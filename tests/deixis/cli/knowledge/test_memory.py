@@ -166,3 +166,10 @@ def test_episodes_are_exported_imported_counted_and_verified(tmp_path: Path) -> 
     file.write_text("{}", encoding="utf-8")
     assert deixis("memory", "import", file, "--memory", tmp_path / "third")[0] == 2
     assert not (tmp_path / "third").exists()
+
+
+def test_what_cannot_be_imported_is_refused_by_what_it_is(tmp_path: Path) -> None:
+    (tmp_path / "bad.zip").write_bytes(b"no archive")
+    for file, reason in ((tmp_path / "bad.zip", "not an archive of views"), (tmp_path, "this is a folder")):
+        code, out, err = deixis("memory", "import", file, "--memory", tmp_path / "m")
+        assert (code, out) == (2, "") and reason in err and "unknown format" not in err

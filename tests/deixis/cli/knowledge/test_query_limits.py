@@ -55,6 +55,19 @@ def test_a_query_that_is_answered_in_time(memory: Path) -> None:
     assert deixis("query", "ASK {}", "--memory", memory, "--memory-limit", "0")[0] == 2
 
 
+@pytest.mark.parametrize("limit", ["9e9", "1e300", "inf"])
+@pytest.mark.parametrize(
+    "command", [("query", "ASK {}"), ("validate",), ("reason", "--engine", "rl"), ("reason", "--engine", "hermit")]
+)
+def test_limits_beyond_those_of_the_system_are_no_limits(memory: Path, command: tuple[str, ...], limit: str) -> None:
+    code, _, err = deixis(*command, "--memory", memory, "--time-limit", limit)
+    assert (code, err) == (0, "")
+
+
+def test_any_memory_limit_can_be_given(memory: Path) -> None:
+    assert deixis("query", "ASK {}", "--memory", memory, "--memory-limit", 10**20) == (0, "yes\n", "")
+
+
 def test_ctrl_c_ends_a_query_at_once(memory: Path) -> None:
     code = (
         "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
@@ -76,3 +89,10 @@ def test_ctrl_c_ends_a_query_at_once(memory: Path) -> None:
         assert ran.wait(timeout=BUSY_SECONDS) == 130
         assert (ran.stdout.read(), ran.stderr.read()) == ("", "")
     assert not (memory / "semantic.snapshot").exists()
+
+
+def test_half_of_a_surrogate_pair_in_a_query_has_its_place(memory: Path) -> None:
+    code, out, err = deixis("query", 'ASK { ?a ?b "\udcff" }', "--memory", memory)
+    assert (code, out) == (2, "") and err.startswith(
+        "deixis: query:1:14: this is not a character; write the query in UTF-8"
+    )

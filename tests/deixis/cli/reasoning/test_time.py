@@ -125,7 +125,6 @@ def test_without_time_it_is_undecided_and_exits_3() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--at", "nan"], "finite number of seconds"),
         (["--at", "inf"], "a time must be a finite number of seconds, got inf"),
         (["--window", "0", "inf"], "a window must have finite ends, got 0.0 and inf"),
         (["--relate", "fetch", "served", "--pattern", "cup", "on", "*"], "--pattern excludes"),

@@ -24,7 +24,7 @@ from deixis.perception.tracking.frames.frame import Frame
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import UNNAMED
-from deixis.robot.live.learner import DONE, NOT_SEEN, SAYS, Learner
+from deixis.robot.live.learner import DONE, NOT_FOUND, NOT_SEEN, SAYS, Learner
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.run import live_robot
 from deixis.robot.live.senses import DROPPED, ENDED, NOTICED, SAID, TABLE, Senses
@@ -281,3 +281,11 @@ def test_a_table_that_others_wrote_is_left_out(tmp_path: Path, text: str | None)
         robot = Robot(tmp_path, ModuleBoard(board, learner))
         assert robot.unnamed == []
         robot.close()
+
+
+def test_a_description_of_absent_things_gets_an_answer(tmp_path: Path) -> None:
+    scene = tmp_path / "a.scene.json"
+    scene.write_text('{"objects": []}', encoding="utf-8")
+    with Blackboard.transient() as board:
+        words = ("table", TABLE, str(scene)), ("ada", SAID, "fork left of plate")
+        assert told(board, Learner(str(tmp_path / "memory")), *words) == [NOT_FOUND]
