@@ -15,6 +15,10 @@ MAX_DIGITS = 308
 """Maximum number of digits of a whole number, so that each converts to a finite double."""
 
 
+class NumberTooLargeError(json.JSONDecodeError):
+    """A number that no double holds; its place is that of its first digits in the text."""
+
+
 def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | None) -> Any:
     """Return the data in a JSON text.
 
@@ -50,19 +54,24 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
     deixis.errors.DeixisError: t.json: NaN is not a number
     """
 
+    document = text.removeprefix("\ufeff")
+
     def refuse(name: str) -> float:
         raise ValueError(f"{name} {no_number}")
+
+    def too_large(digits: str, message: str) -> None:
+        raise NumberTooLargeError(message, document, document.find(digits))
 
     def whole_number(digits: str) -> int:
         count = len(digits.removeprefix("-"))
         if count > MAX_DIGITS:
-            raise ValueError(f"a number of {count} digits is too large: at most {MAX_DIGITS} digits are read")
+            too_large(digits, f"a number of {count} digits is too large: at most {MAX_DIGITS} digits are read")
         return int(digits)
 
     def finite(digits: str) -> float:
         number = float(digits)
         if math.isinf(number):
-            raise ValueError(f"the number {shortened(digits, 60)} is too large; the largest is about 1.8e308")
+            too_large(digits, f"the number {shortened(digits, 60)} is too large; the largest is about 1.8e308")
         return number
 
     def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -75,15 +84,17 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
 
     try:
         return json.loads(
-            text.removeprefix("\ufeff"),
+            document,
             parse_constant=refuse if no_number else None,
             parse_float=finite if no_number else None,
             parse_int=whole_number,
             object_pairs_hook=without_repeats,
         )
     except json.JSONDecodeError as wrong:
-        place = f"{file}:{wrong.lineno}:{wrong.colno}"
-        raise error(f"{place}: this is not valid JSON: {json_mistake(wrong.doc, wrong.pos, wrong.msg)}") from wrong
+        message = wrong.msg
+        if not isinstance(wrong, NumberTooLargeError):
+            message = f"this is not valid JSON: {json_mistake(wrong.doc, wrong.pos, wrong.msg)}"
+        raise error(f"{file}:{wrong.lineno}:{wrong.colno}: {message}") from wrong
     except RecursionError as wrong:
         raise error(f"{file}: the JSON is nested too deeply") from wrong
     except ValueError as wrong:

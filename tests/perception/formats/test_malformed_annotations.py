@@ -95,7 +95,6 @@ CATALOGUE: list[tuple[Json, str]] = [
     (coco(bbox=[1, 2, 3, -4]), "annotations[0]: 'bbox': width and height must be at least 0"),
     (coco(bbox=[1, 2, 0, 4]), "annotations[0]: 'bbox': the outline must have a width above 0"),
     (coco(bbox=[1, 2, 3, 0]), "annotations[0]: 'bbox': the outline must have a height above 0"),
-    (coco(bbox=[1, 10**400, 3, 4]), "annotations[0]: 'bbox': the number is too large"),
     (coco(bbox=[1.7e308, 2, 1.7e308, 4]), "annotations[0]: 'bbox': a coordinate is not finite"),
     (
         coco(segmentation={"counts": [1, 2], "size": [3, 4]}),

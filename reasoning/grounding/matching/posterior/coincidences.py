@@ -18,9 +18,8 @@ The odds that the object is absent and p an undescribed thing, against the objec
 where u is the evidence of the match without facts: a thing that is there by coincidence seldom has the object's kind or
 label as well. The share a of absent objects is estimated from the same scene (empirical Bayes, Robbins 1956): it is the
 mean probability of absence, with ``PRIOR_OBJECTS`` more objects of which ``PRIOR_ABSENT`` are absent. So a scene that
-has all described objects loses almost no decided matches. Where absent objects had places in the model, their mean
-probability of absence is kept as that share; it is still too small for matches of absent objects to be left undiscounted.
-``benchmarks/fit_coincidences.py`` fits the four numbers.
+has all described objects loses almost no decided matches. Where absent objects had places in the model, the mean
+probability of absence is near that share and is kept. ``benchmarks/fit_coincidences.py`` fits the four numbers.
 """
 
 from __future__ import annotations
