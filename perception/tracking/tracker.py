@@ -751,7 +751,8 @@ class Tracker:
         new = seen.missing_part()
         reference.owner.ravel()[new] = thing.slot
         reference.give(new[changed.ravel()[new]], thing.slot, image)
-        new = np.union1d(np.union1d(new, parts), revealed_part(thing, reference, view))
+        resting = [other for other in self._things if other is not thing and not other.active]
+        new = np.union1d(np.union1d(new, parts), revealed_part(thing, resting, reference, view))
         if len(new):
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]

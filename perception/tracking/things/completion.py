@@ -82,13 +82,20 @@ AROUND = np.ones((3, 3), np.bool_)
 """Neighbourhood of a pixel."""
 
 
-def revealed_part(thing: Pipeline, reference: Reference, view: TableView) -> NDArray[np.intp]:
+def revealed_part(
+    thing: Pipeline, others: Iterable[Pipeline], reference: Reference, view: TableView
+) -> NDArray[np.intp]:
     """Return the pixels of a thing at rest that show what its model lacks, such as the handle of a turned mug.
+
+    Pixels that agree better with another thing whose box contains them show that thing: the rim of a plate that comes
+    into view behind what lies on it.
 
     Parameters
     ----------
     thing
         The thing.
+    others
+        The other things at rest.
     reference
         The table at rest.
     view
@@ -100,7 +107,19 @@ def revealed_part(thing: Pipeline, reference: Reference, view: TableView) -> NDA
         Flat indices of shape (k,), empty if all that is seen is within its box.
     """
     own = np.flatnonzero(reference.owner == thing.slot)
-    new = own[~thing.contains(reference.points(own, view), BEYOND)]
+    points = reference.points(own, view)
+    beyond = ~thing.contains(points, BEYOND)
+    own, points = own[beyond], points[beyond]
+    if len(own) < MIN_PART:
+        return own[:0]
+    tints = reference.colour.reshape(-1, 3)[own].astype(np.float64)
+    least = thing.unlikeness(points, tints)
+    for other in others:
+        held = np.flatnonzero(other.contains(points, thing.settings.margin))
+        if len(held):
+            unlike = other.unlikeness(points[held], tints[held])
+            least[held[unlike < least[held]]] = -np.inf
+    new = own[np.isfinite(least)]
     return new if len(new) >= MIN_PART else new[:0]
 
 
@@ -307,6 +326,7 @@ class FlatThing:
         """Return a mask of the pixels in the line of a thing on a plate, beyond its ends, that differ from the plate.
 
         They are compared with the plate beside the line, since the wall of a plate has other shades than its middle.
+        Where the line crosses the wall at an angle, only the hue tells the thing from the plate.
         """
         if not self._is_slender:
             return np.zeros(carrier.shape, np.bool_)
@@ -321,10 +341,24 @@ class FlatThing:
         number = np.floor(along / SLICE).astype(np.int64)
         found = np.zeros(carrier.shape, np.bool_)
         for each in np.unique(number[end]):
-            plate, here = shade[beside & (number == each)], end & (number == each)
+            plate, here = shade[beside & (number == each)], shade[end & (number == each)]
             if len(plate) >= MIN_BESIDE:
-                found[here] = np.linalg.norm(shade[here] - np.median(plate, axis=0), axis=-1) > UNLIKE_BESIDE
+                differs = np.linalg.norm(here - np.median(plate, axis=0), axis=-1) > UNLIKE_BESIDE
+                if differs.any():  # the mean has less noise, and pixels at an edge have both hues
+                    mean = here[differs].mean(axis=0, keepdims=True)
+                    has_hue = self._is_nearer_in_hue(np.concatenate([here, mean]), plate.mean(axis=0))
+                    found[end & (number == each)] = differs & has_hue[:-1] & has_hue[-1]
         return found
+
+    def _is_nearer_in_hue(self, colours: NDArray[np.float64], plate: NDArray[np.float64]) -> Mask:
+        """Return a mask of the colours (k, 3) that are nearer to the thing's mean than to a plate's, in any light."""
+        own = self._thing.cloud.colours
+        if own is None:
+            return np.zeros(len(colours), np.bool_)
+        pair = np.stack([own.mean(axis=0, dtype=np.float64), plate])
+        along = colours @ (pair / np.maximum(np.linalg.norm(pair, axis=1, keepdims=True), 1e-9)).T
+        nearer: Mask = along[:, 0] > along[:, 1]
+        return nearer
 
     @property
     def _is_slender(self) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 from collections import deque
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,9 @@ from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import State, TrackedThing
 from deixis.perception.tracking.table.reference import Beneath
 from deixis.perception.tracking.things.particles import Estimate, ParticleFilter, turned_by
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 HIDDEN_SCORE, EMPTY_SCORE = 0.12, -0.35
 """Scores of a point that something may hide, and of a point where something should be seen and is not."""
@@ -43,6 +47,11 @@ MIN_ALIGNED = 0.6
 SHADE_SPREAD, COLOUR_SPREAD = 38.0, 15.0
 """Standard deviations of the colours of one place of a thing, as distances in RGB from 0 to 255: of the length of the
 colour, which changes with the light on a turned surface, and across that direction.
+"""
+
+PLACE_SPREAD, LEAST_LIKENESS = 0.005, 0.02
+"""Standard deviation in metres of a measured place of a thing from its nearest known point, and the least likeness of
+a colour, beyond which it may be a part of another colour.
 """
 
 COLOURS = 8
@@ -123,6 +132,7 @@ class Pipeline:
 
     def _choose_points(self) -> None:
         """Choose the points of the thing that are compared with frames."""
+        self._tree: cKDTree | None = None
         limits = self.settings.particles
         few = np.linspace(0, len(self.cloud) - 1, min(limits.points, len(self.cloud))).astype(np.int64)
         order = np.random.default_rng(0).permutation(len(self.cloud))
@@ -346,6 +356,29 @@ class Pipeline:
             Likeness in [0, 1] to the nearest of a few colours of the thing, shape (k,).
         """
         return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)], shade)
+
+    def unlikeness(self, points: NDArray[np.float64], tints: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how badly measured points agree with the thing's own points, by place and by colour.
+
+        Parameters
+        ----------
+        points
+            Points of shape (k, 3) in the table's frame, in metres.
+        tints
+            Their colours, shape (k, 3).
+
+        Returns
+        -------
+        ndarray
+            Negative logarithms of the likelihood of shape (k,), 0 for a point at a place and of a colour of the thing.
+        """
+        from scipy.spatial import cKDTree
+
+        if self._tree is None:
+            self._tree = cKDTree(self.cloud.points)
+        away, _ = self._tree.query((points - self.pose[:3, 3]) @ self.pose[:3, :3])
+        least: NDArray[np.float64] = 0.5 * (away / PLACE_SPREAD) ** 2
+        return least - np.log(np.maximum(self.likeness(tints), LEAST_LIKENESS))
 
     def seen_at_place(
         self,

@@ -161,6 +161,14 @@ def test_end_of_a_spoon_on_a_plate_is_found() -> None:
     assert set(columns.tolist()) == set(range(62, 74)) and set(rows.tolist()) <= set(range(28, 33))
 
 
+def test_shaded_wall_of_a_plate_does_not_continue_a_spoon() -> None:
+    on = table()
+    lay(on, np.s_[10:50, 10:110], WHITE, 2, 0.015)
+    lay(on, np.s_[28:33, 62:80], (150, 147, 143), 2, 0.015)  # the wall, where the spoon's line crosses it at an angle
+    lay(on, np.s_[29:32, 30:62], STEEL, 1, 0.015)
+    assert not len(flat(thing_at(np.s_[29:32, 30:62], 1), on).missing_part())
+
+
 @pytest.mark.parametrize(("is_hidden", "stands"), [(True, True), (False, False)])
 def test_thing_with_a_hidden_foot_stands_on_the_table(is_hidden: bool, stands: bool) -> None:
     on, glass = table(), thing_at(np.s_[25:35, 55:65], 1, BLUE)
@@ -188,14 +196,24 @@ def test_side_that_comes_into_view_extends_the_thing() -> None:
     on = table()
     lay(on, np.s_[25:40, 30:45], BLUE, 1, 0.01)
     mug = thing_at(np.s_[25:40, 30:45], 1, BLUE)
-    assert not len(revealed_part(mug, on.reference, view()))
+    assert not len(revealed_part(mug, [], on.reference, view()))
     lay(on, np.s_[30:34, 45:50], BLUE, 1, 0.01)
-    handle = revealed_part(mug, on.reference, view())
+    handle = revealed_part(mug, [], on.reference, view())
     assert len(handle) >= 12 and (handle % SHAPE[1]).min() >= 45
     before = mug.pose[:3, 3].copy()
     points = on.reference.points(handle, view())
     mug.extend(points, np.tile(BLUE, (len(points), 1)).astype(np.float32), TrackingSettings().detection.outlines)
     assert mug.pose[0, 3] - before[0] == pytest.approx(0.0125, abs=0.003)
+
+
+def test_plate_that_comes_into_view_is_not_a_part_of_a_napkin() -> None:
+    on = table()
+    lay(on, np.s_[10:50, 10:60], WHITE, 2, 0.01)
+    lay(on, np.s_[25:40, 30:45], BLUE, 1, 0.01)
+    napkin, plate = thing_at(np.s_[25:40, 30:45], 1, BLUE), thing_at(np.s_[10:50, 10:60], 2, WHITE)
+    on.owner[25:40, 45:50] = 1  # of the plate, but within the margin of the napkin's box
+    assert len(revealed_part(napkin, [], on.reference, view()))
+    assert not len(revealed_part(napkin, [plate], on.reference, view()))
 
 
 @pytest.mark.parametrize(("yaw", "half"), [(0.0, (0.058, 0.04)), (0.5, (0.054, 0.04))])

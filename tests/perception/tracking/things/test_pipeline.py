@@ -39,3 +39,16 @@ def test_pose_at_rest_is_that_of_all_pixels_of_the_thing() -> None:
     napkin.align(image, table_view(OPTICS, BACK, SHAPE), depth == 1.0, seen, 0.0015)
     assert napkin.pose[:2, 3] == pytest.approx(middle[:2], abs=0.004)
     assert napkin.last_rest is napkin.pose
+
+
+def test_unlikeness_grows_with_the_distance_and_with_the_hue() -> None:
+    points = np.random.default_rng(1).uniform(-0.05, 0.05, (2000, 3)) * (1, 1, 0.1)
+    cloud = PointCloud(points.astype(np.float32), np.tile(np.array(RED, np.uint8), (len(points), 1)))
+    pose = np.eye(4)
+    pose[:3, 3] = 0.3, 0.2, 0.005
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.1, 0.1, 0.01))
+    napkin = Pipeline("t1", 1, cloud, np.array([0.05, 0.05, 0.005]), box, pose, 0.0, TrackingSettings())
+    places = pose[:3, 3] + np.array([(0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.055, 0.0, 0.0), (0.07, 0.0, 0.0)])
+    own, other, beside, away = napkin.unlikeness(places, np.array([RED, WOOD, RED, RED], np.float64))
+    assert own < 0.5 and own < beside < away and away > 6
+    assert own + 1 < other < away, "a part may have another colour"
