@@ -53,7 +53,6 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
         ...
     deixis.errors.DeixisError: t.json: NaN is not a number
     """
-
     document = text.removeprefix("\ufeff")
 
     def refuse(name: str) -> float:

@@ -230,7 +230,7 @@ class RelatorChunker:
                 last = self.chunks[-1] if self.chunks else None
                 aims = last is not None and isinstance(last.value, VerbGroup) and last.value.kind in ("face", "point")
                 ends = self.norms[alone[0]] in ("", ",", ".", ";", "and")
-                noted = last is not None and last.type == "NP" and ends and _names_part(last.value)
+                noted = last is not None and isinstance(last.value, NounPhrase) and ends and _names_part(last.value)
                 if not aims and not noted:
                     return None
             if alone[1].relation == "there" and self._previous() not in FINITE | {"ADV", "ADVERB", "NP", "PART"}:

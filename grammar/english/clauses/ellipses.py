@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
 from deixis.grammar.english.clauses.editing import cut, end_before, type_at
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import NounPhrase
@@ -153,8 +153,10 @@ def _with_denied_predicates(chunks: list[Chunk]) -> list[Chunk]:
 
 def _is_respective(chunk: Chunk) -> bool:
     """Return True for *respectively* and *in that order*."""
-    adverb = chunk.type == "ADVERB" and chunk.value in ("in that order", "in this order", "in order")
-    return adverb or (chunk.type == "ADV" and chunk.value.preposition.phrase == "respectively")
+    if chunk.type == "ADV":
+        relator: Relator = chunk.value
+        return relator.preposition.phrase == "respectively"
+    return chunk.type == "ADVERB" and chunk.value in ("in that order", "in this order", "in order")
 
 
 def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:

@@ -374,9 +374,8 @@ class Pipeline:
         """
         from scipy.spatial import cKDTree
 
-        if self._tree is None:
-            self._tree = cKDTree(self.cloud.points)
-        away, _ = self._tree.query((points - self.pose[:3, 3]) @ self.pose[:3, :3])
+        tree = self._tree = self._tree or cKDTree(self.cloud.points)
+        away, _ = tree.query((points - self.pose[:3, 3]) @ self.pose[:3, :3])
         least: NDArray[np.float64] = 0.5 * (away / PLACE_SPREAD) ** 2
         return least - np.log(np.maximum(self.likeness(tints), LEAST_LIKENESS))
 
