@@ -434,6 +434,8 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, label="misplaced, or (dashed) extra"))
     if marks.belongs:
         keys.append(Patch(facecolor=PAPER, edgecolor=BELONGS, linestyle=(0, (2, 2)), label="where it belongs"))
+    if marks.belongs.keys() & found.matches.keys():
+        keys.append(Line2D([], [], color=BELONGS, linestyle=(0, (4, 2)), label="move it there"))
     if marks.miscoloured:
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, linewidth=0, hatch=HATCH, label="of another colour"))
     if marks.unsure:
