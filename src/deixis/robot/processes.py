@@ -173,7 +173,12 @@ class ProcessRunner(Runner):
         self._process = self._begin()
         self._watch = threading.Thread(target=self._watching, name=f"process {name}", daemon=True)
         self._watch.start()
-        self._ready.wait(CALL_TIMEOUT)
+        try:
+            self._ready.wait(CALL_TIMEOUT)
+        except BaseException:  # Ctrl-C: the process is not known to the runtime yet
+            self._stopped.set()
+            self._process.kill()
+            raise
 
     @property
     def pid(self) -> int:

@@ -76,7 +76,7 @@ def test_intrinsics_are_read_from_json(tmp_path: Path) -> None:
 def test_impossible_intrinsics_are_refused(change: dict[str, object], message: str, tmp_path: Path) -> None:
     file = tmp_path / "camera.json"
     file.write_text(json.dumps({"width": 3, "height": 2, "fx": 2, "fy": 4.0, "cx": 1, "cy": 0.5} | change))
-    with pytest.raises(CloudError, match=r"camera\.json: ") as raised:
+    with pytest.raises(CloudError, match=r"camera\.json:") as raised:
         read_intrinsics(file)
     assert message in str(raised.value)
 

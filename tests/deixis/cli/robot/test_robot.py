@@ -113,13 +113,24 @@ def test_a_file_that_cannot_be_read_is_refused_at_first(folder: Path, tmp_path: 
     assert "the story has ended" not in err and not (tmp_path / "m").exists()
 
 
+MAIN_WITH_CTRL_C = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts background jobs with SIGINT ignored
+from deixis.__main__ import main
+main()
+"""
+
+
+@pytest.mark.parametrize("started", [0.0, 1.0], ids=["while it starts", "later"])
 @pytest.mark.parametrize("processes", [[], ["--processes"]], ids=["threads", "processes"])
-def test_ctrl_c_ends_the_robot_and_all_its_processes_quietly(tmp_path: Path, processes: list[str]) -> None:
+def test_ctrl_c_ends_the_robot_and_all_its_processes_quietly(
+    tmp_path: Path, processes: list[str], started: float
+) -> None:
     (tmp_path / "clouds").mkdir()
     memory = tmp_path / "memory"
     command = ["robot", "run", "--from", tmp_path / "clouds", "--grows", "--memory", memory, *processes]
     robot = subprocess.Popen(
-        [sys.executable, "-m", "deixis.cli.app", *map(str, command)],
+        [sys.executable, "-c", MAIN_WITH_CTRL_C, *map(str, command)],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -127,7 +138,7 @@ def test_ctrl_c_ends_the_robot_and_all_its_processes_quietly(tmp_path: Path, pro
         start_new_session=True,
     )
     assert until(memory.exists)
-    time.sleep(1.0)  # the modules start
+    time.sleep(started)
     os.killpg(robot.pid, signal.SIGINT)
     _, err = robot.communicate(timeout=BUSY_SECONDS)
     assert (robot.returncode, err) == (130, b"")
