@@ -148,7 +148,8 @@ def coincidences(problem: Problem, marginals: Array) -> Coincidences:
         for ends, others, at in ((subjects, objects, likelihood), (objects, subjects, likelihood.T)):
             missing = away[others]
             np.add.at(values, ends, np.log(things[others] @ at.T + missing[:, None]))
-            np.add.at(largest, ends, np.log(things[others] @ at.max(axis=0) + missing))
+            # no product by BLAS, whose kernel for vectors may flag an invalid value where there is none
+            np.add.at(largest, ends, np.log((things[others] * at.max(axis=0)).sum(axis=1) + missing))
     rows, chosen = np.arange(n1), np.round(marginals[:, :n2], TIE_DIGITS).argmax(axis=1)
     there = values[rows, chosen]
     relative = np.exp(np.minimum(values - there[:, None], MAX_LOG_ODDS))
