@@ -275,7 +275,7 @@ def _laying(entry: Any) -> Laying:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return json_type(value) == "a number"
 
 
 def _is_whole(value: Any, least: int) -> bool:

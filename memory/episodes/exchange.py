@@ -252,7 +252,7 @@ def _of_list(data: Any) -> EpisodicFluent:
         if not isinstance(value, list) or len(value) != length:
             raise ImportFormatError(f"its {name} must be a list of {length} parts, as in {form}")
     for number in (*(end for end in ends if end is not None), certainty):
-        if not isinstance(number, int | float) or isinstance(number, bool):
+        if json_type(number) != "a number":
             raise ImportFormatError(f"its times and certainty must be numbers, as in {form}, got {json_type(number)}")
     (subject, predicate, thing), (origin, by, event) = statement, source
     texts = {

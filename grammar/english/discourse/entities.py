@@ -55,6 +55,11 @@ class Entity:
             found = found.same_as
         return found
 
+    @property
+    def is_picked(self) -> bool:
+        """True if the text told this object apart from the others of its group."""
+        return any(dimension == "picked" for dimension, _ in self.adjectives)
+
     def leaves(self) -> Iterator[Entity]:
         """Yield the single objects.
 

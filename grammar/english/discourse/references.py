@@ -418,7 +418,7 @@ class References:
         """
         leaves = list(group.leaves())
         if phrase.determiner == "other" or phrase.pronoun == "other":
-            taken = [leaf for leaf in leaves if any(pair[0] == "picked" for pair in leaf.adjectives)]
+            taken = [leaf for leaf in leaves if leaf.is_picked]
             return next((leaf for leaf in leaves if leaf not in taken), leaves[-1])
         for predicate in phrase.predicates:  # 'the second fork from the left', with the leaves from left to right
             rank = predicate.value.rank if predicate.relation == "ordinal" and predicate.value is not None else None
@@ -432,7 +432,7 @@ class References:
             for leaf in leaves:
                 if (adjective.dimension, adjective.word) in leaf.adjectives or ("picked", tag) in leaf.adjectives:
                     return self._picked(leaf, phrase)
-            free = [leaf for leaf in leaves if not any(p[0] == "picked" for p in leaf.adjectives)]
+            free = [leaf for leaf in leaves if not leaf.is_picked]
             if not free or adjective.dimension == "state":
                 continue
             leaf = free[0]
@@ -459,7 +459,7 @@ class References:
                     self.compare(relation, leaf, other, phrase)
 
     def _picked(self, leaf: Entity, phrase: NounPhrase) -> Entity:
-        if not any(pair[0] == "picked" for pair in leaf.adjectives):
+        if not leaf.is_picked:
             leaf.adjectives.add(("picked", "named"))
         leaf.mention(self.words(phrase))
         return leaf
@@ -622,7 +622,7 @@ class References:
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
         second = relation is None and phrase.pronoun == "other" and phrase.determiner == "the" and not phrase.plural
         leaves = [] if group is None else list(group.leaves())
-        free = [leaf for leaf in leaves if not any(dimension == "picked" for dimension, _ in leaf.adjectives)]
+        free = [leaf for leaf in leaves if not leaf.is_picked]
         before = self.recent[0] if self.recent and self.recent[0].sentence == self.sentence else None
         labelled = before is not None and before.subject is group and before.relation is None
         listed = before is not None and (labelled or before.subject in leaves)

@@ -113,13 +113,12 @@ def revealed_part(
     if len(own) < MIN_PART:
         return own[:0]
     tints = reference.colour.reshape(-1, 3)[own].astype(np.float64)
-    least = thing.unlikeness(points, tints)
+    unlike, theirs = thing.unlikeness(points, tints), np.zeros(len(own), np.bool_)
     for other in others:
         held = np.flatnonzero(other.contains(points, thing.settings.margin))
         if len(held):
-            unlike = other.unlikeness(points[held], tints[held])
-            least[held[unlike < least[held]]] = -np.inf
-    new = own[np.isfinite(least)]
+            theirs[held] |= other.unlikeness(points[held], tints[held]) < unlike[held]
+    new = own[~theirs]
     return new if len(new) >= MIN_PART else new[:0]
 
 

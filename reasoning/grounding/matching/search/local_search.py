@@ -173,16 +173,14 @@ def move_pairs(labels, problem):  # type: ignore[no-untyped-def]
         Total gain in nats, at least 0.
     """
     n1, width = problem.unary.shape
-    held, gain_i, gain_j = np.zeros(width, np.bool_), np.empty(width), np.empty(width)
-    held[labels] = True
+    gain_i, gain_j, buffer = np.empty(width), np.empty(width), np.empty(width, np.int64)
     total, cells, better = 0.0, 0, True
     while better:
         better = False
         for i in range(n1):
             others = problem.other[problem.first[i] : problem.first[i + 1]]
             for j in np.unique(others[others > i]):
-                held[labels[i]] = held[labels[j]] = held[width - 1] = False
-                things = np.flatnonzero(~held)
+                things = buffer[: _free(labels, np.array([i, j]), buffer) + 1]
                 between = problem.first[i] + np.flatnonzero(others == j)
                 cells += len(things) ** 2 * len(between)
                 if cells > MAX_PAIRED_CELLS:
@@ -205,7 +203,6 @@ def move_pairs(labels, problem):  # type: ignore[no-untyped-def]
                                 value += problem.tables[problem.kind[slot], p, q]
                             if value > best + MIN_GAIN:
                                 best, labels[i], labels[j] = value, p, q
-                held[labels[i]] = held[labels[j]] = True
                 if best > now:
                     total, better = total + best - now, True
     return total
