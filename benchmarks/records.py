@@ -20,7 +20,7 @@ import platform
 import statistics
 import subprocess
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -42,6 +42,9 @@ BUSY = 0.25
 
 RUNNING = Path("/proc/loadavg")
 """Linux's file with the number of programs that run now, the reader included."""
+
+MEASURES_OF_A_CASE = 1.5
+"""Minimum mean number of figures named ``case: measure`` of a case, from which on they form a table."""
 
 NORMAL_95 = 1.96
 """Half of the 95 per cent interval of a normal distribution, in standard deviations."""
@@ -358,7 +361,8 @@ def page() -> str:
         "folder of the repository. A star (*) marks commands that read public data that does not come with Deixis;",
         "`DEIXIS_DATA` names the folder of that data ([which data](explanation/figures.md)). Brackets hold 95 per cent",
         "intervals. *Times as long* is the time of the named peer divided by that of Deixis in the same run. Times in",
-        "seconds are recorded only on an idle machine. The last column shows the change since the recording before.",
+        "seconds are recorded only on an idle machine. A signed number in italics is the change of the value since the",
+        "recording before.",
         "",
         "*Old* marks a record that is older than the newest one on this page, by the stated number of commits. The",
         "measured code may have changed since; `git diff --stat COMMIT` lists the changed files.",
@@ -374,23 +378,50 @@ def page() -> str:
 
 
 def _table(recordings: list[Recording], newest: int) -> list[str]:
+    """Return the lines of a run: a row for each case and a column for each measure if its figures form a table.
+
+    A figure named ``case: measure`` belongs into such a table.
+    """
     if not recordings:
         return ["Not recorded yet."]
     last = recordings[0]
-    before = {(figure.name, figure.unit): figure for figure in recordings[1].figures} if len(recordings) > 1 else {}
-    since = f"change since `{recordings[1].commit}`" if before else "change"
+    before = {(each.name, each.unit): each.value for each in recordings[1].figures} if len(recordings) > 1 else {}
+    since = f" Changes are those since `{recordings[1].commit}`." if before else ""
     age = newest - last.number
     old = f" *Old*, by {age} commit{'s' if age > 1 else ''}." if last.number and age else ""
-    lines = [f"Commit `{last.commit}`, {last.date}, {last.machine}.{old}", ""]
-    lines += [f"| figure | value | {since} |", "|---|---|---|"]
+    lines = [f"Commit `{last.commit}`, {last.date}, {last.machine}.{old}{since}", ""]
+    cells: dict[str, dict[str, str]] = {}
     for each in last.figures:
-        interval = "" if each.interval is None else " ({} to {})".format(*map(_shown, each.interval))
-        peer = "" if each.peer is None else f", {each.peer}"
-        unit = "" if each.unit in ("share", "count") else f" {each.unit}"
-        earlier = before.get((each.name, each.unit))
-        change = "" if earlier is None else _signed(each.value - earlier.value)
-        lines.append(f"| {each.name}{peer} | {_shown(each.value)}{interval}{unit} | {change} |")
-    return lines
+        case, _, measure = each.name.rpartition(": ")
+        cells.setdefault(case, {})[f"{measure}{_peer_and_unit(each)}"] = _cell(each, before)
+    measures = list(dict.fromkeys(measure for row in cells.values() for measure in row))
+    if "" in cells or len(last.figures) < MEASURES_OF_A_CASE * len(cells):
+        rows = [(f"{each.name}{_peer_and_unit(each)}", _cell(each, before)) for each in last.figures]
+        return [*lines, *_rows(("figure", "value"), rows)]
+    return [*lines, *_rows(("case", *measures), [(case, *map(row.get, measures)) for case, row in cells.items()])]
+
+
+def _rows(heads: Sequence[str], rows: Iterable[Sequence[str | None]]) -> Iterator[str]:
+    for row in (heads, ["---"] * len(heads), *rows):
+        yield f"| {' | '.join(cell or '' for cell in row)} |"
+
+
+def _peer_and_unit(figure: Figure) -> str:
+    """Return what follows the name of a figure, such as ``, rdflib 7.6.0 (times as long)``."""
+    peer = "" if figure.peer is None else f", {figure.peer}"
+    return peer if figure.unit in ("share", "count") else f"{peer} ({figure.unit})"
+
+
+def _cell(figure: Figure, before: Mapping[tuple[str, str], float]) -> str:
+    """Return the value, its interval, and its change; the interval of a share is cut off at 0 and 1."""
+    interval = ""
+    if figure.interval is not None:
+        low, high = figure.interval
+        ends = (max(low, 0.0), min(high, 1.0)) if figure.unit == "share" else (low, high)
+        interval = " ({} to {})".format(*map(_shown, ends))
+    earlier = before.get((figure.name, figure.unit))
+    change = "" if earlier is None else _signed(figure.value - earlier)
+    return f"{_shown(figure.value)}{interval}{change and f', *{change}*'}"
 
 
 def _rounded(value: float) -> float | int:
@@ -399,12 +430,12 @@ def _rounded(value: float) -> float | int:
 
 
 def _shown(value: float) -> str:
-    return f"{float(f'{value:.3g}'):,g}" if abs(value) < 1e6 else f"{value:,.0f}"
+    return f"{float(f'{round(value, 9):.3g}'):,g}" if abs(value) < 1e6 else f"{value:,.0f}"
 
 
 def _signed(change: float) -> str:
     shown = _shown(change)
-    return "none" if shown in ("0", "-0") else shown if change < 0 else f"+{shown}"
+    return "" if shown in ("0", "-0") else shown if change < 0 else f"+{shown}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import records
-from records import RUNS, Run, command_line, count, figure, ratio, recorded, seconds, share
+from records import RUNS, Figure, Recording, Run, command_line, count, figure, ratio, recorded, seconds, share
 from source_tree import ROOT
 
 BENCHMARKS = sorted((ROOT / "benchmarks").glob("bench_*.py"))
@@ -105,11 +105,12 @@ def test_busy_means_that_other_programs_run_now(
 
 def test_the_page_shows_the_change_since_the_last(here: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     measure("--record", "--size", "12")
-    assert "| named right | 0.75 (0.468 to 0.911) |  |" in records.page()
+    assert "| named right | 0.75 (0.468 to 0.911) |" in records.page()
     monkeypatch.setattr(records, "measured_commit", lambda: "def5678")
     measure("--record", "--size", "12", right=12)
-    assert "change since `abc1234`" in records.page()
-    assert "| named right | 1 (0.757 to 1) | +0.25 |" in records.page()
+    assert "Changes are those since `abc1234`." in records.page()
+    assert "| named right | 1 (0.757 to 1), *+0.25* |" in records.page()
+    assert "| tables | 4 |" in records.page()
 
 
 def test_an_error_leaves_the_record_alone(here: Run) -> None:
@@ -139,3 +140,18 @@ def test_the_page_says_which_records_are_old(here: Run, monkeypatch: pytest.Monk
     assert recording.number == 7
     assert records._table([recording], 8)[0].endswith("*Old*, by 1 commit.")
     assert records._table([recording], 7)[0].endswith("cores.")
+
+
+def test_measures_of_cases_form_a_table() -> None:
+    figures = [
+        Figure("3 views: named right", 0.96, "share", (0.902, 1.018)),
+        Figure("3 views: search", 2, "times as long", peer="numpy 2"),
+        Figure("5 views: named right", 0.98, "share"),
+    ]
+    recording = Recording("abc1234", "2026-01-01", "x86-64, 2 cores", figures)
+    assert records._table([recording], 0)[2:] == [
+        "| case | named right | search, numpy 2 (times as long) |",
+        "| --- | --- | --- |",
+        "| 3 views | 0.96 (0.902 to 1) | 2 |",
+        "| 5 views | 0.98 |  |",
+    ]
