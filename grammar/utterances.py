@@ -112,7 +112,7 @@ def read_utterances(path: str | Path) -> tuple[Utterance, ...]:
     ScriptFileError
         If the file cannot be read.
     """
-    return utterances_of_lines(read_text(Path(path), str(path)).splitlines(), str(path))
+    return utterances_of_lines(read_text(Path(path), str(path)).split("\n"), str(path))
 
 
 def utterances_of_lines(lines: Iterable[str], file: str = "<utterances>") -> tuple[Utterance, ...]:

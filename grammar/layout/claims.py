@@ -8,10 +8,10 @@ of*). A phrase stands for the term of the claim, its value and its metres. Some 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from deixis.grammar.layout.words import BETWEEN, BOUNDARY
+from deixis.grammar.layout.words import BETWEEN, BOUNDARY, first_word
 from deixis.ontology.graph.claims import COLLECTIVE, PLACES, SUPERLATIVES, Claim
 from deixis.ontology.lexicon.adjectives import adjectives
 from deixis.ontology.relations.relation import ARTICLES
@@ -39,6 +39,11 @@ PARTS = {
 
 A blade faces what its edge is turned to; its tip need not point there.
 """
+
+PREPOSITIONS = ("at", "in", "on", "along")
+"""Prepositions of places."""
+
+AIMS = ("pointing", "facing")
 
 TOWARD = ("to", "toward", "towards", "at")
 """Prepositions between a part and where it points."""
@@ -112,11 +117,14 @@ _MIDDLE_OF_SIDE = (
     f"{_words('middle', 'centre', 'center')}{BETWEEN}of{BETWEEN}{_SIDED}"
     f"(?>(?:{BETWEEN}{_words('edge', 'end', 'side')})?)"
 )
-_PLACE = f"{_words('at', 'in', 'on', 'along')}{_WHICH}(?:{_MIDDLE_OF_SIDE}|{_NOUN})"
+_PLACE = f"{_words(*PREPOSITIONS)}{_WHICH}(?:{_MIDDLE_OF_SIDE}|{_NOUN})"
 _PLACE_OF = (  # others, as 'in the middle of' and 'on the left side of', are relations
     f"(?:at{_WHICH}(?:{_MIDDLE_OF_SIDE}|{_NOUN})"
     f"|{_words('in', 'on', 'along')}{_WHICH}{_words('corner', 'edge', 'end')})"
 )
+_EACH_OTHER = tuple(phrase for phrases in EACH_OTHER.values() for phrase in phrases)
+_BETWEEN = ("between", "among", "in between")
+_BOUNDS = tuple(bound for bounds in DISTANCES.values() for bound in bounds if bound)
 _SUPERLATIVE = f"{_ARTICLE}{_words(*SUPERLATIVES)}"
 _RANK = f"{_ARTICLE}(?:{_words(*RANKS)}|[1-9][0-9]?(?:st|nd|rd|th)){BETWEEN}from{BETWEEN}{_SIDED}"
 _PARALLEL = f"parallel{BETWEEN}{_words('to', 'with')}{BETWEEN}{_REGION}"
@@ -127,47 +135,57 @@ _WITH_PART = (
 )
 _TO = _words(*TOWARD)
 _DISTANCE = (
-    f"(?>(?:{_words(*(w for words in DISTANCES.values() for w in words if w))}{BETWEEN})?)"
+    f"(?>(?:{_words(*_BOUNDS)}{BETWEEN})?)"
     rf"(?>[0-9]+(?:\.[0-9]+)?[ \t]*){_words(*UNITS)}(?:{BETWEEN}away)?{BETWEEN}from"
 )
 
-CLAIM_PATTERN = "|".join(
-    [
-        f"(?>{_PLACE}){BOUNDARY}{_NOT_OF}",
-        f"(?>at{BETWEEN}{_SIDED}){_NOT_OF}(?!{BETWEEN}{_NOUN}{BOUNDARY})",
-        f"on{BETWEEN}surface{BOUNDARY}",
-        f"in{BETWEEN}row{BETWEEN}from{BETWEEN}{_SIDED}{BETWEEN}to{BETWEEN}{_SIDED}",
-        f"in{BETWEEN}{_words(*ARRANGEMENTS)}{BOUNDARY}{_NOT_OF}",
-        f"{_words(*(w for words in EACH_OTHER.values() for w in words))}{BETWEEN}each{BETWEEN}other{BOUNDARY}",
-        f"(?>{_words('pointing', 'facing')}{BETWEEN}(?>(?:{_words('to', 'toward', 'towards')}{BETWEEN})?)"
-        f"{_words(*DIRECTIONS)}){BOUNDARY}{_NOT_OF}",
-        f"(?>{_WITH_PART}(?>(?:{_TO}{BETWEEN})?){_words(*DIRECTIONS)}){BOUNDARY}{_NOT_OF}",
-        f"(?>{_PARALLEL}){BOUNDARY}{_NOT_OF}",
-        f"(?>{_CLOSER_TO_REGION}){BOUNDARY}{_NOT_OF}",
-        f"(?>{_RANK}){_NOT_OF}",
-        f"{_SUPERLATIVE}{BETWEEN}at{BETWEEN}{_SIDED}",
-        f"upside{BETWEEN}down{BOUNDARY}",
-    ]
+_CLAIMS = (
+    (PREPOSITIONS, f"(?>{_PLACE}){BOUNDARY}{_NOT_OF}"),
+    (("at",), f"(?>at{BETWEEN}{_SIDED}){_NOT_OF}(?!{BETWEEN}{_NOUN}{BOUNDARY})"),
+    (("on",), f"on{BETWEEN}surface{BOUNDARY}"),
+    (("in",), f"in{BETWEEN}row{BETWEEN}from{BETWEEN}{_SIDED}{BETWEEN}to{BETWEEN}{_SIDED}"),
+    (("in",), f"in{BETWEEN}{_words(*ARRANGEMENTS)}{BOUNDARY}{_NOT_OF}"),
+    (_EACH_OTHER, f"{_words(*_EACH_OTHER)}{BETWEEN}each{BETWEEN}other{BOUNDARY}"),
+    (AIMS, f"(?>{_words(*AIMS)}{BETWEEN}(?>(?:{_words('to', 'toward', 'towards')}{BETWEEN})?)"
+           f"{_words(*DIRECTIONS)}){BOUNDARY}{_NOT_OF}"),
+    (("with",), f"(?>{_WITH_PART}(?>(?:{_TO}{BETWEEN})?){_words(*DIRECTIONS)}){BOUNDARY}{_NOT_OF}"),
+    (("parallel",), f"(?>{_PARALLEL}){BOUNDARY}{_NOT_OF}"),
+    (CLOSER, f"(?>{_CLOSER_TO_REGION}){BOUNDARY}{_NOT_OF}"),
+    ((*ARTICLES, *RANKS, ""), f"(?>{_RANK}){_NOT_OF}"),
+    ((*ARTICLES, *SUPERLATIVES), f"{_SUPERLATIVE}{BETWEEN}at{BETWEEN}{_SIDED}"),
+    (("upside",), f"upside{BETWEEN}down{BOUNDARY}"),
+)  # fmt: skip
+_CLAIMS_OF = (
+    (PREPOSITIONS, f"(?>{_PLACE_OF}){BETWEEN}of{BOUNDARY}"),
+    (_BETWEEN, f"{_words(*_BETWEEN)}{BOUNDARY}"),
+    (("on",), f"on{BETWEEN}{_words('each side', 'either side', 'both sides')}{BETWEEN}of{BOUNDARY}"),
+    ((*ARTICLES, *SUPERLATIVES), f"{_SUPERLATIVE}{BETWEEN}of{BOUNDARY}"),
+    ((*ARTICLES, *RANKS, ""), f"{_RANK}{BETWEEN}of{BOUNDARY}"),
+    ((*ARTICLES, *NEAREST), f"{_ARTICLE}{_words(*NEAREST)}{BOUNDARY}"),
+    (("parallel",), f"(?>{_PARALLEL}){BETWEEN}of{BOUNDARY}"),
+    (CLOSER, f"{_words(*CLOSER)}{BOUNDARY}"),
+    (("with",), f"{_WITH_PART}{_TO}{BOUNDARY}"),
+    ((*_BOUNDS, ""), f"{_DISTANCE}{BOUNDARY}"),
 )
-"""Regular expression of the phrases that no object follows."""
+"""Patterns of claims, each with the phrases that it begins with; an empty one stands for a number."""
 
-CLAIM_OF_PATTERN = "|".join(
-    [
-        f"(?>{_PLACE_OF}){BETWEEN}of{BOUNDARY}",
-        f"{_words('between', 'among', 'in between')}{BOUNDARY}",
-        f"on{BETWEEN}{_words('each side', 'either side', 'both sides')}{BETWEEN}of{BOUNDARY}",
-        f"{_SUPERLATIVE}{BETWEEN}of{BOUNDARY}",
-        f"{_RANK}{BETWEEN}of{BOUNDARY}",
-        f"{_ARTICLE}{_words(*NEAREST)}{BOUNDARY}",
-        f"(?>{_PARALLEL}){BETWEEN}of{BOUNDARY}",
-        f"{_words(*CLOSER)}{BOUNDARY}",
-        f"{_WITH_PART}{_TO}{BOUNDARY}",
-        f"{_DISTANCE}{BOUNDARY}",
-    ]
-)
-"""Regular expression of the phrases that objects follow."""
 
-HAS_PATTERN = f"{_words('has', 'have')}{BETWEEN}{_words(*PROPERTIES, 'color')}{BOUNDARY}"
+def _by_first_word(claims: Iterable[tuple[Iterable[str], str]]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for starts, pattern in claims:
+        for word in dict.fromkeys(map(first_word, starts)):
+            found.setdefault(word, []).append(pattern)
+    return found
+
+
+CLAIM_PATTERNS, CLAIM_OF_PATTERNS = _by_first_word(_CLAIMS), _by_first_word(_CLAIMS_OF)
+"""Regular expressions of the phrases that no object follows, and of those that objects follow, by first word."""
+
+CLAIM_PATTERN, CLAIM_OF_PATTERN = ("|".join(pattern for _, pattern in claims) for claims in (_CLAIMS, _CLAIMS_OF))
+"""Regular expressions of all such phrases."""
+
+HAS = ("has", "have")
+HAS_PATTERN = f"{_words(*HAS)}{BETWEEN}{_words(*PROPERTIES, 'color')}{BOUNDARY}"
 """Regular expression of the phrases that the value of a property follows."""
 
 COMMON_PHRASES = (
@@ -209,7 +227,7 @@ def meaning(phrase: str) -> Phrase:
     ('left to right', '2 from left')
     """
     words = [word for word in re.split(r"[ \t_-]+", phrase.casefold()) if word and word not in ARTICLES]
-    if words[0] in ("has", "have"):
+    if words[0] in HAS:
         return Phrase("colour" if words[1] == "color" else words[1])
     if words[-1] == "of":
         words.pop()
@@ -232,12 +250,12 @@ def meaning(phrase: str) -> Phrase:
         return Phrase(words[0], " ".join(words[2:]) or None)
     if words[0] == "parallel":
         return Phrase("parallel", " ".join(words[2:]))
-    if words[0] in ("pointing", "facing"):
+    if words[0] in AIMS:
         return Phrase(words[0], " ".join(word for word in words[1:] if word not in ("to", "toward", "towards")))
     if words[0] == "with":
         part = next(word for word in words if word in PARTS)
         after = [word for word in words[words.index(part) + 1 :] if word not in (*TOWARD, "turned")]
-        aims = [word for word in after if word in ("pointing", "facing")]
+        aims = [word for word in after if word in AIMS]
         rest = [word for word in after if word not in aims]
         part = "handle" if part == "grip" else part
         return Phrase((aims or [PARTS[part]])[0], " ".join([part, *rest]))

@@ -11,14 +11,12 @@ from lark import Lark, Token
 from lark.lark import PostLex
 from lark.lexer import Lexer
 
-from deixis.grammar.layout.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PATTERN, PHRASE_STARTS
-from deixis.grammar.layout.tokens import TERMINALS_WITHOUT_RULE, Scanner
+from deixis.grammar.layout.claims import CLAIM_OF_PATTERNS, CLAIM_PATTERNS, HAS, HAS_PATTERN, PHRASE_STARTS
+from deixis.grammar.layout.tokens import TERMINALS_WITHOUT_RULE, Phrases, Scanner
 from deixis.grammar.layout.tree import TreeBuilder
-from deixis.grammar.layout.words import chains, phrase_pattern
+from deixis.grammar.layout.words import by_first_word, chains, phrase_pattern
 from deixis.ontology.relations.relation import plain_phrase
 from deixis.ontology.tbox import Ontology
-
-NOTHING = "(?!)"  # pattern that matches nothing: a terminal for which the ontology has no word
 
 
 class NoLexer(Lexer):
@@ -134,17 +132,19 @@ def language_of(ontology: Ontology) -> Language:
 def _build(
     relations: tuple[str, ...], hedges: tuple[str, ...], chain_heads: tuple[str, ...], compounds: tuple[str, ...]
 ) -> Language:
-    patterns = {
-        "CLAIM": CLAIM_PATTERN,
-        "CLAIM_OF": CLAIM_OF_PATTERN,
-        "HAS": HAS_PATTERN,
-        "RELATION": phrase_pattern(relations),
-        "HEDGE": phrase_pattern(hedges) if hedges else NOTHING,
-        "CHAIN": phrase_pattern(chain_heads) + r"[ \t]*:" if chain_heads else NOTHING,
-        "COMPOUND": phrase_pattern(compounds) if compounds else NOTHING,
-    }
     lark = _parser()
-    scanner = Scanner(lark.terminals, {name: f"(?i:{pattern})" for name, pattern in patterns.items()})
+    scanner = Scanner(
+        lark.terminals,
+        {
+            "CLAIM": Phrases(CLAIM_PATTERNS, "|".join),
+            "CLAIM_OF": Phrases(CLAIM_OF_PATTERNS, "|".join),
+            "HAS": Phrases({word: [HAS_PATTERN] for word in HAS}, "|".join),
+            "RELATION": Phrases(by_first_word(relations), phrase_pattern),
+            "HEDGE": Phrases(by_first_word(hedges), phrase_pattern),
+            "CHAIN": Phrases(by_first_word(chain_heads), lambda heads: phrase_pattern(heads) + r"[ \t]*:"),
+            "COMPOUND": Phrases(by_first_word(compounds), phrase_pattern),
+        },
+    )
     split = [phrase.split() for phrase in relations]
     starts = frozenset(" ".join(words[:end]) for words in split for end in range(1, len(words)))
     return Language(lark, scanner, starts | PHRASE_STARTS)

@@ -78,6 +78,53 @@ BOUNDARY = r"(?![\w-]|[^\x00-\x7f\s])"
 """Pattern of the end of a word, as in the terminal NAME."""
 
 
+FIRST_WORD = re.compile(r"[^\W\d_]*")
+"""Pattern of the letters at the beginning of a phrase, by which it is found: none if it begins with a number."""
+
+
+def by_first_word(phrases: Iterable[str]) -> dict[str, list[str]]:
+    """Return phrases by their first word in small letters.
+
+    Parameters
+    ----------
+    phrases
+        The phrases.
+
+    Returns
+    -------
+    dict
+        Phrases by first word.
+
+    Examples
+    --------
+    >>> by_first_word(["left of", "left", "to the right of"])
+    {'left': ['left of', 'left'], 'to': ['to the right of']}
+    """
+    found: dict[str, list[str]] = {}
+    for phrase in phrases:
+        found.setdefault(first_word(phrase), []).append(phrase)
+    return found
+
+
+def first_word(text: str, start: int = 0) -> str:
+    """Return the letters at a place of a text, in small letters.
+
+    Parameters
+    ----------
+    text
+        The text.
+    start
+        The place.
+
+    Returns
+    -------
+    str
+        The letters, none if there is another character.
+    """
+    found = FIRST_WORD.match(text, start)
+    return found[0].lower() if found is not None else ""
+
+
 def phrase_pattern(phrases: Iterable[str]) -> str:
     """Return a regular expression that matches the longest of the phrases.
 

@@ -50,7 +50,10 @@ def read_text(file: str | Path, error: type[DeixisError] = DeixisError, most: in
 
 
 def read_lines(
-    file: str | Path, error: type[DeixisError] = DeixisError, most: int = MAX_LINE_CHARACTERS
+    file: str | Path,
+    error: type[DeixisError] = DeixisError,
+    most: int = MAX_LINE_CHARACTERS,
+    undecoded: str = "strict",
 ) -> Iterator[str]:
     """Yield the lines of a UTF-8 file one by one, with their ends and without a byte order mark.
 
@@ -62,6 +65,9 @@ def read_lines(
         Class of the errors.
     most
         Maximum number of characters of a line.
+    undecoded
+        What becomes of bytes that are not UTF-8: ``strict``, an error, or ``surrogateescape``, single surrogates, with
+        which a caller finds the line.
 
     Yields
     ------
@@ -73,7 +79,7 @@ def read_lines(
     DeixisError
         Of the class ``error``, if the file cannot be read, is a folder or a device, has a longer line, or is not UTF-8.
     """
-    with _opened(file, error) as text:
+    with _opened(file, error, undecoded) as text:
         number = 0
         while line := text.readline(most + 1):
             number += 1
@@ -149,10 +155,11 @@ def _replace_text(file: Path, text: str) -> None:
 
 
 @contextmanager
-def _opened(file: str | Path, error: type[DeixisError]) -> Iterator[TextIO]:
+def _opened(file: str | Path, error: type[DeixisError], undecoded: str = "strict") -> Iterator[TextIO]:
     """Open a text file; what goes wrong while it is read is an error of the given class, too."""
     try:
-        with open(file, encoding="utf-8-sig", opener=_without_waiting) as text:  # Path.open takes no opener
+        # Path.open takes no opener
+        with open(file, encoding="utf-8-sig", errors=undecoded, opener=_without_waiting) as text:
             mode = os.fstat(text.fileno()).st_mode
             if not stat.S_ISREG(mode) and not stat.S_ISFIFO(mode):
                 raise error(f"{file}: this is not a regular file; name a text file")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from source_tree import ROOT
@@ -13,6 +14,12 @@ from deixis.grammar.utterances import Utterance, UtteranceError, read_utterances
 def test_lines_are_put_in_order_of_time() -> None:
     found = utterances_of_lines(['{"text": "b", "at": 2}', "", '{"text": "a", "at": 1, "confidence": 0.5}'])
     assert [(one.text, one.confidence) for one in found] == [("a", 0.5), ("b", 1.0)]
+
+
+def test_a_line_separator_in_a_text_ends_no_line(tmp_path: Path) -> None:
+    said = Utterance("this is\u2028a fork", 1.0)
+    (tmp_path / "words.said.jsonl").write_text(json.dumps(said.to_dict(), ensure_ascii=False), encoding="utf-8")
+    assert read_utterances(tmp_path / "words.said.jsonl") == (said,)
 
 
 def test_an_utterance_is_read_from_its_own_data() -> None:

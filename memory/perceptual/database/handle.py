@@ -610,7 +610,10 @@ def raise_level_error(folder: Path, error: BaseException) -> None:
     """
     if isinstance(error, DeixisError) or not isinstance(error, plyvel.Error | OSError):
         return
-    text = one_line(error).removeprefix("b'").removesuffix("'")
+    if isinstance(error, OSError) and error.strerror:
+        text = error.strerror
+    else:
+        text = one_line(error).removeprefix("b'").removesuffix("'")  # plyvel's messages are bytes
     if "orruption" in text or "create_if_missing" in text:
         raise DamagedMemoryError(
             f"the memory at {folder} is damaged ({text}); restore the folder from a copy"

@@ -21,8 +21,8 @@ from deixis.cli import common
 from deixis.cli.common import BAD_INPUT, UNDECIDED, print_note
 from deixis.cli.completion import keep_completion_fast
 from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
-from deixis.cli.numbers import say_numbers_in_words
 from deixis.cli.output import visible_output, what_is_kept
+from deixis.cli.values import say_values_in_words
 
 COMMAND_GROUPS = {
     "Layouts": {
@@ -121,7 +121,7 @@ class CommandsOnDemand(TyperGroup):
         else:
             single.command(cmd_name)(command)
         found = typer.main.get_group(single).commands[cmd_name]
-        say_numbers_in_words(found)
+        say_values_in_words(found)
         return found
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:

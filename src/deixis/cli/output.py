@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from collections.abc import Iterable, Iterator
@@ -98,7 +99,14 @@ def colour_of(line: str) -> str | None:
 
 
 class StandardInput:
-    """Lines of standard input; a closed one has no lines. Raises DeixisError where it cannot be read or decoded."""
+    """Lines of standard input; a closed one has no lines. Raises DeixisError where it cannot be read or decoded.
+
+    With ``undecoded="surrogateescape"``, bytes that cannot be decoded become single surrogates.
+    """
+
+    def __init__(self, undecoded: str = "strict") -> None:
+        if undecoded != "strict" and isinstance(sys.stdin, io.TextIOWrapper):
+            sys.stdin.reconfigure(errors=undecoded)
 
     def readline(self, most: int = MAX_ANSWER) -> str:
         """Return the next line, cut after ``most`` characters; an empty text at the end."""

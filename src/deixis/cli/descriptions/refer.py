@@ -153,13 +153,13 @@ def _remember(text: str, scene: Scene, picked: str, memory: Path) -> None:
 
 
 def _answer_lines(file: str, until: float, model: Model | None) -> None:
-    from deixis.text_files import read_text
+    from deixis.text_files import read_lines
     from deixis.workflows.descriptions.refer import refer_batch
 
     if file == "-":
-        lines, folder = StandardInput().lines(MAX_LINE), Path()
+        lines, folder = StandardInput(undecoded="surrogateescape").lines(MAX_LINE), Path()
     else:
-        lines, folder = iter(read_text(file).splitlines()), Path(file).parent
+        lines, folder = read_lines(file, undecoded="surrogateescape"), Path(file).parent
     for answer in refer_batch(lines, folder, until, model):
         print_line(json.dumps(answer, ensure_ascii=False))
 

@@ -48,13 +48,19 @@ def run(
     layout: Annotated[
         str | None, typer.Option(metavar="SCRIPT", help="How the simulated table is laid; default: a shipped one.")
     ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the simulated story.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option(metavar="N", min=0, help="Seed of the simulated story; default: 0.")
+    ] = None,
     camera: Annotated[
-        str, typer.Option(metavar="still|sway|walk", help="With --from laying: movement of the person's camera.")
-    ] = "sway",
+        str | None,
+        typer.Option(
+            metavar="still|sway|walk", help="With --from laying: movement of the person's camera; default: sway."
+        ),
+    ] = None,
     rate: Annotated[
-        float, typer.Option(metavar="HZ", min=0.5, max=30, help="Frames per second of the simulator.")
-    ] = 4.0,
+        float | None,
+        typer.Option(metavar="HZ", min=0.5, max=30, help="Frames per second of the simulator; default: 4."),
+    ] = None,
     intrinsics: Annotated[Path | None, typer.Option(metavar="FILE", help="Camera of depth images (.json).")] = None,
     grows: Annotated[bool, typer.Option("--grows", help="Wait for further clouds in the folder.")] = False,
     words: Annotated[

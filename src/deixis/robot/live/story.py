@@ -43,6 +43,9 @@ WORDS, PEOPLE = "words.said.jsonl", "people.skeleton.jsonl"
 SPEECH_PAUSE = 1.5
 """Pause in seconds before and after what a simulated person says."""
 
+RATE = 4.0
+"""Default number of frames a second of the simulator."""
+
 CUSTOMER_PAUSE = 5.0
 """Time in seconds between the two customers, in which the robot does not look."""
 
@@ -136,9 +139,9 @@ class StorySettings:
     layout
         Script of the simulated table.
     seed
-        Seed of the simulated story.
+        Seed of the simulated story, 0 by default.
     rate
-        Frames a second of the simulator.
+        Frames a second of the simulator, 4 by default.
     intrinsics
         File with the intrinsics of the camera, for depth images.
     grows
@@ -148,18 +151,18 @@ class StorySettings:
     live
         True to play the simulated story or the recording at its own speed, as a camera does.
     camera
-        Path of the camera in the story ``laying``: ``still``, ``sway`` or ``walk``.
+        Path of the camera in the story ``laying``: ``still``, ``sway`` (by default) or ``walk``.
     """
 
     source: str
     layout: str | None = None
-    seed: int = 0
-    rate: float = 4.0
+    seed: int | None = None
+    rate: float | None = None
     intrinsics: str | None = None
     grows: bool = False
     words: str | None = None
     live: bool = False
-    camera: str = "sway"
+    camera: str | None = None
 
     def check(self) -> None:
         """Check the settings before the robot starts, and read the files that they name except clouds.
@@ -177,16 +180,18 @@ class StorySettings:
         from deixis.perception.clouds.depth import read_intrinsics
         from deixis.perception.simulator.films.camera_paths import camera_path
 
-        camera_path(self.camera)  # an unknown path is an error in every story
-        given = {"layout": self.layout is not None, "intrinsics": self.intrinsics is not None, "grows": self.grows}
+        if self.camera is not None:
+            camera_path(self.camera)  # an unknown path is an error in every story
         simulated = self.source in SIMULATED
-        for setting, needs, fits in (
-            ("layout", "a simulated story", simulated),
-            ("intrinsics", "a folder of clouds", not (simulated or self._is_driver)),
-            ("grows", "a folder of clouds", not (simulated or self._is_driver)),
+        for needs, fits, settings in (
+            ("a simulated story", simulated, ("layout", "seed", "rate")),
+            ("the story 'laying'", self.source == "laying", ("camera",)),
+            ("a folder of clouds", not (simulated or self._is_driver), ("intrinsics", "grows")),
         ):
-            if given[setting] and not fits:
-                raise SettingError(f"`{setting}` goes with {needs} only, not with '{self.source}'; leave it out")
+            for setting in settings:
+                given = getattr(self, setting)
+                if not (given is None or given is False or fits):
+                    raise SettingError(f"`{setting}` goes with {needs} only, not with '{self.source}'; leave it out")
         if simulated:
             _require_things(self._script(), 1)
         if self.words is not None:
@@ -232,11 +237,12 @@ class StorySettings:
 
         self.check()
         if self.source in SIMULATED:
-            script = self._script()
+            script, seed = self._script(), self.seed or 0
+            rate = RATE if self.rate is None else self.rate
             if self.source == "laying":
-                found = laying_story(script, self.seed, self.rate, self.camera)
+                found = laying_story(script, seed, rate, self.camera or "sway")
             else:
-                found = simulated_story(script, self.seed, self.rate)
+                found = simulated_story(script, seed, rate)
         elif self._is_driver:
             found = Story(made(self.source, CloudSource).frames())  # type: ignore[type-abstract]
         else:
@@ -321,7 +327,7 @@ def recorded_story(folder: str | Path, intrinsics: str | Path | None = None, gro
     return Story(source.frames(), tuple(words), tuple(skeletons))
 
 
-def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
+def simulated_story(script: Script, seed: int = 0, rate: float = RATE) -> Story:
     """Return a story of one table and two customers.
 
     The table is laid for the first customer. A teacher points at two things and names them, and says how the table is
@@ -369,7 +375,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     recording = Teacher(scene, seed).points_at([scene.ids[k] for k in shown], hold=1.5)
     words = [
         Utterance(
-            f"This is {with_article(first.things[k].name.replace('_', ' '))}.",
+            f"This is {with_article(plain_name(first.things[k].name).replace('_', ' '))}.",
             SPEECH_PAUSE + aim.start,
             SPEECH_PAUSE + aim.finish,
             "teacher",
@@ -404,7 +410,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in recording.skeletons), truth)
 
 
-def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str = "sway") -> Story:
+def laying_story(script: Script, seed: int = 0, rate: float = RATE, camera: str = "sway") -> Story:
     """Return a story in which a person with a camera on her head lays a table and says what she does.
 
     She begins with what lies under other things, and announces each thing (*first the plate*, *then the cup*). Her

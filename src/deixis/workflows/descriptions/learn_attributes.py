@@ -38,7 +38,7 @@ def learn_attributes(sentences: str | Path | Iterable[str], folder: Path | None 
     """
     if isinstance(sentences, str | Path):
         path = Path(sentences)
-        lines: Sequence[str] = read_text(path, str(path)).splitlines()
+        lines: Sequence[str] = read_text(path, str(path)).split("\n")
         file, folder = str(path), folder or path.parent
     else:
         lines, file, folder = list(sentences), "<sentences>", folder or Path()

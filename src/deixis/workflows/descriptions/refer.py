@@ -243,6 +243,10 @@ def line_of_batch(line: str, required: Sequence[str], others: Sequence[str] = ()
     """
     form = ", ".join(f'"{key}": …' for key in required)
     try:
+        line.encode()
+    except UnicodeEncodeError as error:  # single surrogates stand for what was not UTF-8
+        raise DescriptionError(f"column {error.start + 1}: not UTF-8; save the lines as UTF-8") from error
+    try:
         data = parse_json(line, "", DescriptionError, no_number=None)
     except DescriptionError as error:
         wrong, reason = error.__cause__, str(error).removeprefix(": ")

@@ -50,6 +50,21 @@ def test_a_batch_prints_a_line_for_each_line(tmp_path: Path) -> None:
     assert ["error" in answer for answer in answers] == [False, True, True]
 
 
+@pytest.mark.parametrize("from_file", [True, False])
+def test_bytes_that_are_no_text_spoil_one_line(
+    from_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = json.dumps({"text": "the sofa\u2028", "scene": str(STUDY)}, ensure_ascii=False).encode()
+    content = b"\n".join([good, b'{"text": "caf\xe9"}', good])
+    (tmp_path / "all.jsonl").write_bytes(content)
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content), encoding="utf-8"))
+    code, out, _ = deixis("refer", "--batch", tmp_path / "all.jsonl" if from_file else "-")
+    first, second, third = map(json.loads, out.split("\n")[:3])
+    assert code == 0
+    assert first == third and first["target"] == "o11"
+    assert second == {"error": "line 2: column 14: not UTF-8; save the lines as UTF-8"}
+
+
 def test_a_long_line_of_a_batch_is_one_error(monkeypatch: pytest.MonkeyPatch) -> None:
     good = json.dumps({"text": "the sofa", "scene": str(STUDY)})
     monkeypatch.setattr("sys.stdin", io.StringIO("[" * 250_000 + "\n" + good + "\n"))

@@ -92,7 +92,10 @@ def test_a_story_of_two_customers_needs_two_free_things(script: str) -> None:
     ("source", "option"),
     [
         ("simulator", ("--grows",)),
+        ("simulator", ("--camera", "walk")),
         ("laying", ("--intrinsics", "a.json")),
+        ("some.module:Camera", ("--rate", "2")),
+        (".", ("--seed", "0")),
         ("some.module:Camera", ("--grows",)),
         ("some.module:Camera", ("--layout", "a.layout")),
         (".", ("--layout", "a.layout")),

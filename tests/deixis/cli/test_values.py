@@ -1,4 +1,4 @@
-"""Check that number options say in words what they allow, in their help and in their errors."""
+"""Check that options of numbers and paths say in words what they allow, in their help and in their errors."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def test_a_number_within_the_range_is_taken() -> None:
     assert "at least 0" in out
 
 
-def options_of_numbers() -> list[tuple[str, str, int]]:
-    """Return each command with each of its options that take numbers, and how many numbers the option takes."""
+def options_of(*kinds_of_values: str) -> list[tuple[str, str, int]]:
+    """Return each command with each of its options that take such values, and how many values the option takes."""
     found = []
 
     def visit(command: Any, path: tuple[str, ...]) -> None:
@@ -50,7 +50,7 @@ def options_of_numbers() -> list[tuple[str, str, int]]:
             visit(subcommand, (*path, name))
         for parameter in command.params:
             kinds = [kind.name for kind in getattr(parameter.type, "types", [parameter.type])]
-            if any(kind.startswith(("int", "float")) for kind in kinds) and parameter.opts[0].startswith("-"):
+            if any(kind.startswith(kinds_of_values) for kind in kinds) and parameter.opts[0].startswith("-"):
                 found.append((" ".join(path), parameter.opts[-1], len(kinds)))
 
     group: Any = typer.main.get_group(app)
@@ -59,9 +59,16 @@ def options_of_numbers() -> list[tuple[str, str, int]]:
     return found
 
 
-@pytest.mark.parametrize(("command", "option", "numbers"), options_of_numbers())
+@pytest.mark.parametrize(("command", "option", "numbers"), options_of("int", "float"))
 @pytest.mark.parametrize("given", ["nan", "-NaN", "x"])
 def test_no_option_takes_what_is_not_a_number(command: str, option: str, numbers: int, given: str) -> None:
     code, out, err = deixis(*command.split(), *[option, *[given] * numbers])
     assert (code, out) == (2, "")
     assert option in err and "must be a" in err and f"got {given}" in err
+
+
+@pytest.mark.parametrize(("command", "option", "paths"), options_of("path", "file", "directory"))
+def test_no_option_takes_an_empty_path(command: str, option: str, paths: int) -> None:
+    code, out, err = deixis(*command.split(), *[option, *[""] * paths])
+    assert (code, out) == (2, "")
+    assert option in err and "must name a file or a folder, got an empty text" in err

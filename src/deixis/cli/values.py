@@ -1,4 +1,4 @@
-"""Numbers on the command line: errors and help texts that say in words which numbers are allowed."""
+"""Values of options and arguments: errors and help texts that say in words which numbers and paths are allowed."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ from deixis.printable import visible_line
 _NOUNS = {"int": "a whole number", "int range": "a whole number", "float": "a number", "float range": "a number"}
 """Noun phrase of each numeric type, by its name in the library that parses the command line."""
 
+_PATHS = ("path", "file", "directory")
+"""Names of the types of paths in that library."""
 
-class _InWords:
+
+class _Number:
     """Mixin of a numeric type of the library that parses the command line: its range and its error in words."""
 
     def _describe_range(self: Any) -> str:
@@ -37,8 +40,18 @@ class _InWords:
         self.fail(f"must be {allowed}, got {visible_line(str(value))}", parameter, context)
 
 
-def say_numbers_in_words(command: Any) -> None:
-    """Make the numeric parameters of a command, and of its subcommands, say in words what they allow.
+class _Path:
+    """Mixin of the type of paths: an empty text, such as that of a variable that is not set, is no path."""
+
+    def convert(self: Any, value: Any, parameter: Any, context: Any) -> Any:
+        """Return the path that a text stands for; fail if it is empty, which would mean the current folder."""
+        if value == "":
+            self.fail("must name a file or a folder, got an empty text", parameter, context)
+        return super().convert(value, parameter, context)  # type: ignore[misc]
+
+
+def say_values_in_words(command: Any) -> None:
+    """Make the parameters of a command, and of its subcommands, say in words which numbers and paths they allow.
 
     Parameters
     ----------
@@ -46,16 +59,18 @@ def say_numbers_in_words(command: Any) -> None:
         Command of the library that parses the command line.
     """
     for subcommand in getattr(command, "commands", {}).values():
-        say_numbers_in_words(subcommand)
+        say_values_in_words(subcommand)
     for parameter in command.params:
         parameter.type = _in_words(parameter.type)
 
 
 def _in_words(kind: Any) -> Any:
-    """Return a numeric type, or a tuple of such types, that says in words what it allows; another type as it is."""
+    """Return a type of numbers or paths, or a tuple of such types, that says in words what it allows."""
     kind = copy.copy(kind)
     if hasattr(kind, "types"):
         kind.types = [_in_words(each) for each in kind.types]
-    elif getattr(kind, "name", None) in _NOUNS:
-        kind.__class__ = type(type(kind).__name__, (_InWords, type(kind)), {})
+        return kind
+    mixin = _Number if kind.name in _NOUNS else _Path if kind.name in _PATHS else None
+    if mixin is not None:
+        kind.__class__ = type(type(kind).__name__, (mixin, type(kind)), {})
     return kind
