@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from difflib import SequenceMatcher
 from functools import lru_cache
 
@@ -38,8 +39,23 @@ About the share of pairs of objects in a scene that have one class, which is gre
 smaller on tables.
 """
 
+NAMED_WEIGHT = 20.0
+"""Number of objects with known classes that count as much as this prior."""
 
-def class_shares(room: Room) -> Array:
+CALLED = 0.85
+"""Fit of a noun and a label from which on the noun names the class."""
+
+ALIKE_SIZES = 0.25
+"""Standard deviation of the logarithms of the sides of objects of one class in one scene."""
+
+STRAY = 1e-6
+"""Least density of the sizes of objects, so that a size that no other object has tells little."""
+
+SIZE_RATIOS = (-8.0, 6.0)
+"""Range of the feature ``size`` of an object whose class is unknown."""
+
+
+def class_shares(room: Room, named: float = NAMED) -> Array:
     """Return the probabilities of the possible classes of each object before a noun is heard, shape (k, n), sum 1.
 
     The classes of an object with a label are its label alone. Those of an object without one are its candidates; what
@@ -49,6 +65,8 @@ def class_shares(room: Room) -> Array:
     ----------
     room
         The scene of n objects.
+    named
+        Probability that an object of an unknown class is of the class that the noun names.
 
     Returns
     -------
@@ -62,7 +80,7 @@ def class_shares(room: Room) -> Array:
         found[: len(names), index] = list(names.values())
     if unknown:
         rest = np.maximum(1.0 - found.sum(axis=0), 1e-6) * room.unlabelled
-        found[-2:] = NAMED * rest, (1 - NAMED) * rest
+        found[-2:] = named * rest, (1 - named) * rest
     return found
 
 
@@ -143,6 +161,32 @@ class Nouns:
             [sum(share * self._pair(noun, name)[-1] for name, share in names.items()) for names in room.names]
         )
 
+    def called(self, nouns: Iterable[str], room: Room) -> Array:
+        """Return the probability that any of some nouns names the class of each object, by its label or its candidates.
+
+        Parameters
+        ----------
+        nouns
+            The nouns; empty ones name nothing.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        ndarray
+            Probabilities, shape (n,).
+        """
+        said = [noun for noun in nouns if noun]
+        return np.array(
+            [
+                sum(
+                    share for name, share in names.items() if any(self._pair(noun, name)[-1] >= CALLED for noun in said)
+                )
+                for names in room.names
+            ],
+            dtype=np.float64,
+        )
+
     def number(self, plural: bool, room: Room) -> Array:
         """Return how the number of a noun agrees with that of each label.
 
@@ -177,13 +221,41 @@ class Nouns:
         return (*one_hot, similarity, spelling, head, max(similarity, 0.9 * head, 0.6 * spelling))
 
     def _sizes(self, noun: str, room: Room) -> Array:
-        """Return log densities of the sizes of objects for what the noun usually measures, shape (n,), at most 0."""
+        """Return how well the size of each object fits a noun, shape (n,): 0 if it tells nothing.
+
+        It is twice the logarithm of a ratio of densities: that of the sizes of the noun's class over that of all sizes
+        in the room, each estimated from the objects whose classes are known. What the noun usually measures
+        counts as one more object of its class. If no class is known, it is that alone, at most 0.
+        """
+        usual = self._usual_sizes(noun, room)
+        known = np.array([sum(names.values()) for names in room.names])
+        if not known.any():
+            return usual
+        logs = np.log(_sides(room))
+        apart = ((logs[:, None] - logs[None]) ** 2).sum(axis=2)
+        alike = np.exp(-apart / (2 * ALIKE_SIZES**2)) + STRAY
+        np.fill_diagonal(alike, 0.0)
+        called = self.called([noun], room)
+        among_all = np.maximum(alike @ known, STRAY) / known.sum()
+        ratio = (alike @ called / among_all + np.exp(usual / 2)) / (called.sum() + 1)
+        result: Array = np.clip(2 * np.log(ratio), *SIZE_RATIOS)
+        return result
+
+    def _usual_sizes(self, noun: str, room: Room) -> Array:
+        """Return by how much the sides of each object are outside what the noun usually measures, shape (n,), negative.
+
+        It is the sum of the logarithms of the ratios, each at least -3.
+        """
         usual = self._lexicon.size_of(noun)
-        plane = np.sort(room.extents[:, :2], axis=1)
-        measured = np.maximum(np.stack([plane[:, 1], plane[:, 0], room.extents[:, 2]], axis=1), 0.005)
         extents = (usual.length, usual.width, usual.height)
         least, greatest = (np.log([max(getattr(one, end), 0.005) for one in extents]) for end in ("least", "greatest"))
-        off = np.log(measured)
-        off = np.maximum(least - off, 0.0) + np.maximum(off - greatest, 0.0)
+        logs = np.log(_sides(room))
+        off = np.maximum(least - logs, 0.0) + np.maximum(logs - greatest, 0.0)
         result: Array = -np.minimum(off, 3.0).sum(axis=1)
         return result
+
+
+def _sides(room: Room) -> Array:
+    """Return length, width and height of each object in metres, shape (n, 3), at least 5 mm."""
+    plane = np.sort(room.extents[:, :2], axis=1)
+    return np.maximum(np.stack([plane[:, 1], plane[:, 0], room.extents[:, 2]], axis=1), 0.005)

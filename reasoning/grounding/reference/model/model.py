@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.things.colours import Colours
-from deixis.reasoning.grounding.reference.features.nouns import class_shares
+from deixis.reasoning.grounding.reference.features.nouns import NAMED, NAMED_WEIGHT, class_shares
 from deixis.reasoning.grounding.reference.features.properties import SIDES, called_by, property_features
 from deixis.reasoning.grounding.reference.features.relations import ANY_RELATION, FAMILIES, RELATIONS, VIEWED, Pairs
 from deixis.reasoning.grounding.reference.features.room import Room
@@ -72,6 +72,9 @@ COUNTED = frozenset({"proximity", "support", "inside"})
 COUNTED_GAP = 0.4
 """Greatest distance of a counted landmark over the scale of the scene."""
 
+LIKELY = 0.5
+"""Probability from which on an object counts as one of the class that a noun names."""
+
 SIZE_TOLERANCE = 1.0
 """Sum of the logarithms by which the sides of an object without a label may lie outside the usual ones of a noun."""
 
@@ -97,6 +100,7 @@ class Lexis:
 
     noun_fit: NounFit
     similarity: Callable[[str, Room], Array]
+    called: Callable[[Iterable[str], Room], Array]
     number_fit: Callable[[bool, Room], Array]
     colours: Colours
 
@@ -237,7 +241,7 @@ class Model:
                 self.lexis.number_fit(description.plural, room)[among],
             ),
         )
-        found = self._named(nouns, class_shares(room)[:, among])[None]
+        found = self._named(nouns, class_shares(room, self._share_named(description, room))[:, among])[None]
         if description.noun:
             found = found + weighted(numbers, "number", self.weights)[None]
         if target:
@@ -277,11 +281,18 @@ class Model:
     def _rivals(self, description: Description, room: Room, among: Indices) -> tuple[Indices, ...]:
         """Return the groups of objects that compete: those with one label, then those that have the said colour too.
 
-        *The tallest red cup* is compared with the red cups, and a blue cup with all cups. All objects
-        compete for *the tallest object*, and wherever no noun is given and any of them has no label.
+        *The tallest red cup* is compared with the red cups, and a blue cup with all cups. Objects without a label
+        compete with the cups if their sizes are rather those of cups. All objects compete for *the tallest object*, and
+        wherever no noun is given and any of them has no label.
         """
         anything = not description.noun and (description.anything or room.unlabelled.any())
         groups = (np.arange(len(among)),) if anything else rival_groups(room, among)
+        bare = np.array([label is None for label in room.labels], dtype=np.bool_)
+        if description.noun and bare.any() and not bare.all():
+            named = self.lexis.called(description.nouns, room) > LIKELY
+            sized = bare & (self._size_fit(description, room) > 0)
+            if named[among].any():
+                groups = (*groups, np.flatnonzero((named | sized)[among]))
         for prop in description.properties:
             if prop.positive and (called := called_by(prop.word, room, self.lexis.colours)) is not None:
                 parts = (group[called[among[group]]] for group in groups)
@@ -380,6 +391,19 @@ class Model:
         found: Array = np.moveaxis(features[best, :, np.arange(len(room))], 0, 1)
         return found
 
+    def _share_named(self, description: Description, room: Room) -> float:
+        """Return the prior probability that an object of an unknown class is of the class that the nouns name.
+
+        It is the share of that class among the objects of the scene whose classes are known, drawn to ``NAMED``.
+        """
+
+        def share() -> float:
+            called = float(self.lexis.called(description.nouns, room).sum())
+            known = sum(sum(names.values()) for names in room.names)
+            return (called + NAMED_WEIGHT * NAMED) / (known + NAMED_WEIGHT)
+
+        return self._keep(description, "share named", share) if room.unlabelled.any() and description.noun else NAMED
+
     def _fit(self, description: Description, room: Room) -> Array:
         """Return how well the nouns of a description fit each object, shape (n,), in [0, 1]."""
         fit = self.lexis.similarity(description.noun, room)
@@ -388,8 +412,8 @@ class Model:
         return fit
 
     def _size_fit(self, description: Description, room: Room) -> Array:
-        """Return log densities of the sizes of objects without a label for a noun, 0 for the others, shape (n,)."""
-        result: Array = self._noun_features(description, room)[-2:, :, -1].min(axis=0)
+        """Return how well the sizes of objects without a label fit a noun, 0 if they tell nothing, shape (n,)."""
+        result: Array = self._noun_features(description, room)[-2:][0, :, -1]  # of the class that the noun names
         return result
 
     def _unseen(self, description: Description, room: Room) -> bool:

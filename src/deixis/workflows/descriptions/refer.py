@@ -320,7 +320,7 @@ def model_with(weights: Mapping[str, Array]) -> Model:
 
     ontology = default_ontology()
     nouns = Nouns(ontology.lexicon)
-    return Model(weights, Lexis(nouns.features, nouns.similarity, nouns.number, ontology.colours))
+    return Model(weights, Lexis(nouns.features, nouns.similarity, nouns.called, nouns.number, ontology.colours))
 
 
 def _question(probabilities: Array, room: Room, until: float) -> Question | None:

@@ -286,6 +286,18 @@ def test_candidates_are_evidence_of_the_class(partly: deixis.Scene) -> None:
     assert fork.target != "o12"
 
 
+def test_an_unlabelled_thing_of_their_size_competes_with_cups() -> None:
+    places, sides = np.arange(7) * 0.5, [0.1, 0.1, 0.1, 0.1, 0.4, 0.4, 0.4]
+    labels = [None, "cup", "cup", "cup", "bin", "bin", None]
+    scene = deixis.Scene.from_boxes(
+        centre=np.column_stack([places, 0 * places, 0 * places]), size=np.repeat(sides, 3).reshape(-1, 3), labels=labels
+    )
+    leftmost, rightmost = (deixis.refer(f"the {side} cup", scene) for side in ("leftmost", "rightmost"))
+    assert (leftmost.target, rightmost.target) == ("o1", "o4")
+    assert not leftmost.decided and leftmost.probability > 0.4
+    assert rightmost.probability > 0.8
+
+
 def cups(**settings: object) -> deixis.Scene:
     boxes = {"west": (0.0, "cup"), "plate": (0.5, "plate"), "east": (1.0, "cup")}
     objects = [

@@ -10,10 +10,14 @@ from deixis.reasoning.grounding.reference.features.nouns import NAMED, Nouns, cl
 from deixis.reasoning.grounding.reference.features.room import Room
 
 
-def room(labels: tuple[str | None, ...], candidates: tuple[dict[str, float], ...] | None = None) -> Room:
-    """Return a row of boxes of 10 cm."""
+def room(
+    labels: tuple[str | None, ...],
+    candidates: tuple[dict[str, float], ...] | None = None,
+    sides: tuple[float, ...] | None = None,
+) -> Room:
+    """Return a row of cubes, of 10 cm unless their sides are given."""
     low = np.arange(len(labels))[:, None] * [0.2, 0.0, 0.0]
-    boxes = np.stack([low, low + 0.1], axis=1)
+    boxes = np.stack([low, low + np.array(sides or (0.1,) * len(labels))[:, None]], axis=1)
     return Room.of([f"o{place}" for place in range(len(labels))], boxes, labels, candidates=candidates)
 
 
@@ -39,3 +43,16 @@ def test_similarity_is_expected_over_the_candidates() -> None:
     nouns = Nouns(default_ontology().lexicon)
     sure, half, bare = nouns.similarity("cup", room(("cup", None, None), ({}, {"cup": 0.5}, {})))
     assert (half, bare) == (pytest.approx(sure / 2), 0.0)
+
+
+def test_what_is_as_large_as_labelled_cups_may_be_a_cup() -> None:
+    seen = room(("cup", "cup", "bin", "bin", None, None), sides=(0.1, 0.09, 0.4, 0.45, 0.1, 0.42))
+    sizes = Nouns(default_ontology().lexicon).features("cup", seen)[-2, :, -1]
+    assert sizes[:4].tolist() == [0.0] * 4
+    assert sizes[4] > 0 > sizes[5]
+
+
+def test_a_noun_names_labels_and_expected_candidates() -> None:
+    seen = room(("cup", "plate", None), ({}, {}, {"cup": 0.7, "mug": 0.2}))
+    called = Nouns(default_ontology().lexicon).called(["cup", ""], seen)
+    assert called[:2].tolist() == [1.0, 0.0] and 0.7 <= called[2] <= 0.9

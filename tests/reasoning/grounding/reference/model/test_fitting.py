@@ -28,7 +28,9 @@ def test_a_fit_learns_that_near_means_far() -> None:
     for seed in range(30):
         seen = room(seed)
         examples.append(Example(query, seen, int(np.argmax(seen.distances[:4, 4]))))
-    start = Model(initial_weights(COLOURS), Lexis(NOUNS.features, NOUNS.similarity, NOUNS.number, COLOURS))
+    start = Model(
+        initial_weights(COLOURS), Lexis(NOUNS.features, NOUNS.similarity, NOUNS.called, NOUNS.number, COLOURS)
+    )
     fitted = Model(fit(start, examples[:20], penalty=0.1, iterations=15), start.lexis)
 
     def right(model: Model) -> int:
