@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.arrows import Arrow, Ends, draw_arrows, draw_directions, drawing_order, points_along
+from deixis.plots.arrows import Arrow, Ends, directions, draw_arrows, draw_directions, drawing_order, points_along
 from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress_table, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding
@@ -273,12 +273,29 @@ def grounding_figure(
     ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
     clear = [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS]), *points_along(ways, WAY_BEND)]
     labels = {match.perceived: _doubtful_label(match, names, colours) for match in found.matches.values()}
-    _finish(figure, axes, scene, labels, clear, title, ghosts, _words(found.violated, ends))
+    shown = _with_ids(scene, {id for match in found.matches.values() for id in _alternatives(match) if id not in names})
+    _finish(figure, axes, shown, labels, clear, title, ghosts, _words(found.violated, ends))
     return figure
 
 
 MAX_ALTERNATIVES = 2
 """Maximum number of alternatives in the label of an undecided match."""
+
+
+def _alternatives(match: Match) -> list[str]:
+    """Return the ids of the things in the label of an undecided match."""
+    return [other.perceived for other in match.alternatives[:MAX_ALTERNATIVES] if other.perceived is not None]
+
+
+def _with_ids(scene: Scene, ids: Collection[str]) -> Scene:
+    """Return a scene in which the labels of some things are followed by the ids that other labels refer to."""
+    return replace(
+        scene,
+        objects=tuple(
+            replace(thing, label=f"{thing.label} ({thing.id})") if thing.label and thing.id in ids else thing
+            for thing in scene.objects
+        ),
+    )
 
 
 def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str, str]) -> str:
@@ -293,14 +310,11 @@ def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str
     label = match.object if match.probability is None else f"{match.object} {probability_text(match.probability)}"
     if match.object in colours or not match.alternatives:
         return label
-    others = [
-        "absent" if other.perceived is None else names.get(other.perceived, other.perceived)
-        for other in match.alternatives[:MAX_ALTERNATIVES]
-    ]
-    places = [other for other in others if other != "absent"]
+    others = match.alternatives[:MAX_ALTERNATIVES]
+    places = [names.get(id, id) for id in _alternatives(match)]
     where = [f"at {', '.join(places)}"] if places else []
     where += ["absent"] if len(places) < len(others) else []
-    return f"{label}\nor {' or '.join(where)}{', …' if len(match.alternatives) > len(others) else ''}"
+    return f"{label}\nor {', or '.join(where)}{', …' if len(match.alternatives) > len(others) else ''}"
 
 
 def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, Arrow]]:
@@ -364,9 +378,11 @@ def _finish(
     axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
     axes.margins(0.06)
     dress_table(axes, scene, title and textwrap.fill(title, TITLE_LINE))
+    heads = directions(scene)
+    draw_directions(axes, heads, INK)
     named = [replace(thing, label=names.get(thing.id) or thing.label or thing.id) for thing in scene.objects]
     quiet = {thing.id for thing in scene.objects if thing.id not in names}
-    write_names(figure, axes, [*named, *ghosts], quiet, clear, words)
+    write_names(figure, axes, [*named, *ghosts], quiet, [*clear, *points_along(heads, bend=0.0)], words)
 
 
 def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[Arrow]:
@@ -397,7 +413,6 @@ def _draw_boxes(
         PatchCollection(edges, match_original=True, zorder=2),
     ):
         axes.add_collection(boxes)
-    draw_directions(axes, scene, INK)
 
 
 def _rectangle(thing: PerceivedObject, **look: Any) -> Rectangle:
