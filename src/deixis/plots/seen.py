@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from deixis.learning.views.views import Recognised
     from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Detected, PerceivedObject, Scene
+    from deixis.workflows.scenes.simulate import Simulation
 
 MAX_POINTS = 60_000
 """Maximum number of points to draw of the things, and of the table."""
@@ -91,6 +92,24 @@ def seen_figure(scene: Scene, axes: Axes | None = None) -> Figure:
     if scene.detection is None or axes is not None:
         return scene_figure(scene, axes)
     return perceived_figure(scene)
+
+
+def simulation_figure(found: Simulation, axes: Axes | None = None) -> Figure:
+    """Draw the true scene of a simulation from above.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis simulate``.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    return scene_figure(found.truth, axes)
 
 
 def perceived_figure(scene: Scene) -> Figure:
