@@ -86,7 +86,7 @@ def learn(
         print_json({"activity": name, "examples": activity.examples, "steps": names, "known": str(known)})
         return
     steps = count(len(activity.steps), "step")
-    print_line(f"Learned '{name}' from {count(activity.examples, 'example')}: {steps}; in {known}")
+    print_line(f"Learned '{name}' from {count(activity.examples, 'example')}: {steps}; stored in {known}")
 
 
 @activity_app.command("recognise")
