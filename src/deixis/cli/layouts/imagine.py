@@ -48,7 +48,7 @@ def imagine(
     _require_writable(script, scenes, pictures)
     parsed = read_script_file(script, deadline=Deadline.after(time_limit))
     tell_of_compiling()
-    with time_bar("laying the table" if count == 1 else f"laying {count} tables", time_limit):
+    with time_bar("laying the table" if count == 1 else f"laying {count} tables", count * time_limit):
         found = run(parsed, any_size=any_size, seed=seed, count=count, time_limit=time_limit)
     _write(found, scenes, pictures)
     if as_json:
