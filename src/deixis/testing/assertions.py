@@ -18,7 +18,8 @@ TIME_LIMIT = 30.0
 """Seconds that an assertion may take; more counts as a failure."""
 
 
-P, T = ParamSpec("P"), TypeVar("T")
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 def _errors_in_the_test(function: Callable[P, T]) -> Callable[P, T]:
