@@ -197,7 +197,7 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
     """Draw what a robot concludes about a table: the name of each thing, and what is wrong.
 
     Names below 0.99 have their probabilities and faded edges. Things that are in a mistake have an edge of their own
-    colour; the title says what is wrong.
+    colour; the title says what is wrong. Ghosts show where missing, displaced and swapped things belong.
 
     Parameters
     ----------
@@ -211,6 +211,9 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
     Figure
         The figure.
     """
+    from matplotlib.patches import Patch
+
+    own_figure = axes is None
     figure, axes = canvas(axes, WIDTH, _table_height(look.scene) + 1.3)
     faults = look.faults()
     labels, sureness = {}, {}
@@ -221,8 +224,15 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
             labels[thing] = name if names[name] >= DECIDED else f"{name} {probability_text(names[name])}"
     marks = Marks(wrong={thing for fault in faults for thing in fault.things})
     _draw_boxes(axes, look.scene, labels, {}, marks, sureness)
+    moved = {role: thing for fault in faults for role, thing in zip(fault.names, fault.things, strict=False)}
+    places = look.places()
+    ghosts, ways = _draw_ghosts(axes, look.scene, moved, places)
+    keys = [Patch(facecolor=PAPER, edgecolor=WRONG, label="in a mistake")] if marks.wrong else []
+    keys += _ghost_keys(places, moved)
+    if keys and own_figure:
+        figure.legend(loc="outside lower center", handles=keys, fontsize=8, frameon=False, ncols=2)
     title = "no known layout" if look.layout is None else "; ".join((f"'{look.layout}'", *map(str, faults)))
-    _finish(figure, axes, look.scene, labels, (), title)
+    _finish(figure, axes, look.scene, labels, points_along(ways, WAY_BEND), title, ghosts)
     return figure
 
 
@@ -258,7 +268,8 @@ def grounding_figure(
     names = {match.perceived: match.object for match in found.matches.values()}
     sureness = {match.perceived: match.sureness for match in found.matches.values()}
     _draw_boxes(axes, scene, names, colours, marks, sureness)
-    ghosts, ways = _draw_ghosts(axes, scene, found, marks.belongs)
+    things = {match.object: match.perceived for match in found.matches.values()}
+    ghosts, ways = _draw_ghosts(axes, scene, things, marks.belongs)
     ends = Ends(scene.objects)
     satisfied, violated = _arrows(found.satisfied, ends), _arrows(found.violated, ends)
     draw_arrows(axes, satisfied, QUIET, 0.8, 3)
@@ -324,9 +335,9 @@ def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, Arrow]
 
 
 def _draw_ghosts(
-    axes: Axes, scene: Scene, found: Grounding, belongs: Mapping[str, NDArray[np.float64]]
+    axes: Axes, scene: Scene, things: Mapping[str, str], belongs: Mapping[str, NDArray[np.float64]]
 ) -> tuple[list[PerceivedObject], list[Arrow]]:
-    """Draw where objects belong, and the ways there; return the ghosts, to be named, and the ways."""
+    """Draw where objects belong, and the ways there from their ``things``; return the named ghosts and the ways."""
     from matplotlib.patches import FancyArrowPatch, Rectangle
 
     boxes = {thing.id: box for thing, box in zip(scene.objects, scene.boxes[:, :, :2], strict=True)}
@@ -335,11 +346,11 @@ def _draw_ghosts(
         look: dict[str, Any] = {"edgecolor": BELONGS, "facecolor": BELONGS, "linestyle": (0, (2, 2)), "linewidth": 1.4}
         axes.add_patch(Rectangle(tuple(low), *(high - low), fill=False, zorder=6, **look))
         axes.add_patch(Rectangle(tuple(low), *(high - low), alpha=0.08, linewidth=0, color=BELONGS, zorder=1.5))
-        match = found.matches.get(name)
-        if match is None:
+        thing = things.get(name)
+        if thing is None:
             ghosts.append(PerceivedObject(f"ghost of {name}", tuple(low), tuple(high), label=f"{name} belongs here"))
             continue
-        start, end = boxes[match.perceived].mean(axis=0).tolist(), ((low + high) / 2).tolist()
+        start, end = boxes[thing].mean(axis=0).tolist(), ((low + high) / 2).tolist()
         ways.append(((start[0], start[1]), (end[0], end[1])))
         way = FancyArrowPatch(
             *ways[-1],
@@ -435,6 +446,19 @@ def _edge(thing: str, name: str | None, colours: Mapping[str, str], marks: Marks
     return {"fill": False, "edgecolor": edge, "linewidth": 1.2, "linestyle": style, "alpha": alpha}
 
 
+def _ghost_keys(belongs: Collection[str], matched: Collection[str]) -> list[Any]:
+    """Return the entries of the legend for the ghosts, and for the ways to them from the objects on the table."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    keys: list[Any] = []
+    if belongs:
+        keys.append(Patch(facecolor=PAPER, edgecolor=BELONGS, linestyle=(0, (2, 2)), label="where it belongs"))
+    if any(name in matched for name in belongs):
+        keys.append(Line2D([], [], color=BELONGS, linestyle=(0, (4, 2)), label="move it there"))
+    return keys
+
+
 def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> list[Any]:
     """Return the entries of the legend: facts, marks, and the first groups of interchangeable objects."""
     from matplotlib.lines import Line2D
@@ -447,10 +471,7 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))
     if marks.wrong:
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, label="misplaced, or (dashed) extra"))
-    if marks.belongs:
-        keys.append(Patch(facecolor=PAPER, edgecolor=BELONGS, linestyle=(0, (2, 2)), label="where it belongs"))
-    if marks.belongs.keys() & found.matches.keys():
-        keys.append(Line2D([], [], color=BELONGS, linestyle=(0, (4, 2)), label="move it there"))
+    keys += _ghost_keys(marks.belongs, found.matches)
     if marks.miscoloured:
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, linewidth=0, hatch=HATCH, label="of another colour"))
     if marks.unsure:
