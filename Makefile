@@ -30,7 +30,7 @@ lint: $(STAMP)
 	$(BIN)/basedpyright
 	$(BIN)/lint-imports
 
-# Writes the documentation site anew, docs/_build/html/index.html. Warnings are errors; nothing is fetched.
+# Writes the documentation site, docs/_build/html/index.html. Warnings are errors; nothing is fetched.
 docs: $(STAMP)
 	@rm -rf docs/_build docs/_pictures
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going --builder html docs docs/_build/html
@@ -56,7 +56,7 @@ $(STAMP): requirements.lock pyproject.toml setup.py
 	@$(BIN)/python -m deixis.kernels
 	@touch $(STAMP)
 
-# Writes the lock anew: name==version and hashes, no address. Needs uv.
+# Writes the lock: name==version and hashes, no address. Needs uv.
 lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 		--no-emit-index-url --no-emit-find-links --extra dev --quiet pyproject.toml --output-file requirements.lock

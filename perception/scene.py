@@ -517,6 +517,37 @@ class Scene(Answer):
         read: Callable[..., Scene] = _format("scene_json").read_scene
         return read(source, image)
 
+    def to_coco(self, size: tuple[int, int] | None = None, file_name: str | None = None) -> dict[str, Any]:
+        """Return the scene as COCO instance annotations of one image.
+
+        Parameters
+        ----------
+        size
+            Width and height of the image in pixels; None for the smallest image that holds all boxes.
+        file_name
+            File name of the image.
+
+        Returns
+        -------
+        dict
+            The annotations, with y downward; :meth:`from_coco` reads them.
+
+        Raises
+        ------
+        SceneError
+            If the scene is not in pixels.
+
+        Examples
+        --------
+        >>> scene = Scene.from_boxes(min=[[10.0, 420.0]], max=[[40.0, 460.0]], labels=["cup"], unit="px")
+        >>> scene.to_coco(size=(640, 480))["annotations"][0]["bbox"]
+        [10.0, 20.0, 30.0, 40.0]
+        >>> Scene.from_coco(scene.to_coco(size=(640, 480)))["o1"].minimum
+        (10.0, 420.0)
+        """
+        write: Callable[..., dict[str, Any]] = _format("coco").scene_to_coco
+        return write(self, size, file_name)
+
     @classmethod
     def from_detections3d(cls, message: Any, *, viewpoint: str = "chair") -> Scene:
         """Return the scene of a ``vision_msgs/Detection3DArray``.

@@ -41,7 +41,7 @@ def require_time_limit(seconds: float) -> None:
         If it is not.
     """
     if not isinstance(seconds, Real) or not seconds >= 0:
-        raise SettingError(f"the time limit must be 0 or more seconds, got {seconds}")
+        raise SettingError(f"`time_limit` must be at least 0 seconds, got {seconds}")
 
 
 class NothingFoundError(DeixisError, LookupError):

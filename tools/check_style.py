@@ -1,4 +1,4 @@
-"""Check the plain English of docstrings, comments, messages and pages against `docs/style.md`.
+"""Check the plain English of docstrings, comments, messages, pages and descriptions against `docs/style.md`.
 
 Print one line per finding, as `file:line: message`, and exit with 1 where there is any. `make lint` runs it.
 """
@@ -11,7 +11,7 @@ import re
 import sys
 import tokenize
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -19,6 +19,9 @@ PYTHON_FOLDERS = (
     "ontology", "reasoning", "grammar", "perception", "memory", "src/deixis", "tests", "benchmarks", "tools",
 )  # fmt: skip
 TEXT_FILES = ("*.md", "docs/**/*.md", "examples/**/*.md", ".github/**/*.md")
+DESCRIBING_FILES = ("ontology/*.ttl", "docs/schema/*.json", "examples/*.ipynb", "examples/*.layout", "Makefile")
+"""Files of other languages with descriptions, comments or texts in English."""
+
 UNCHECKED = (
     "style.md", "check_style.py", "test_check_style.py", "ontology.md",
     "words.py", "function_words.py", "relation_words.py", "verbs.py",
@@ -43,7 +46,7 @@ PHRASES = {
     r"(?:is|are|be|was|were|being) told(?! apart)": "name who reports what: 'the message names …'",
     r"anew": "again, or re- before the verb",
     r"(?<!there )(?-i:(?:is|are|was|were) none)": "there is no …",
-    r"(?<!teddy )(?<!the )(?<!a )(?<![\"'`])bears?(?! in mind)": "has, carries, or supports",
+    r"(?<!teddy )(?<!the )(?<!a )(?<![\"'`])(?-i:bears?)(?! in mind)": "has, carries, or supports",
     r"in the place of": "instead of",
     r"who is who": "which object each name refers to",
     r"nobody|somebody|nothing but": "name the person or the data",
@@ -134,18 +137,31 @@ def text_findings(path: Path, text: str) -> Iterator[Finding]:
     yield from _phrase_findings(path, without_code, 1)
 
 
+_DESCRIPTIONS = re.compile(r'(?:skos:definition|rdfs:comment|sh:message|"(?:description|title)":)\s+"([^"]+)"')
+
+
+def description_findings(path: Path, text: str) -> Iterator[Finding]:
+    """Yield the wordings to avoid in Turtle, JSON and other files, and descriptions that open with a question."""
+    yield from _phrase_findings(path, text, 1)
+    for found in _DESCRIPTIONS.finditer(text):
+        for riddle in _riddle(path, 1 + text.count("\n", 0, found.start(1)), found[1]):
+            yield replace(riddle, message=riddle.message.replace("docstring", "description"))
+
+
 def findings(names: list[str]) -> Iterator[Finding]:
     """Yield the findings of the whole project, or of the files and folders that ``names`` starts with."""
     python = [path for folder in PYTHON_FOLDERS for path in sorted((ROOT / folder).rglob("*.py"))]
     texts = [path for pattern in TEXT_FILES for path in sorted(ROOT.glob(pattern))]
-    for path in [*python, *texts]:
+    others = [path for pattern in DESCRIBING_FILES for path in sorted(ROOT.glob(pattern))]
+    for path in [*python, *texts, *others]:
         local = path.relative_to(ROOT)
         if local.name in UNCHECKED or any(parent.is_symlink() for parent in path.parents):
             continue
         if names and not any(local.is_relative_to(name) for name in names):
             continue
         source = path.read_text(encoding="utf-8")
-        yield from python_findings(local, source) if path.suffix == ".py" else text_findings(local, source)
+        check = {".py": python_findings, ".md": text_findings}.get(path.suffix, description_findings)
+        yield from check(local, source)
 
 
 def main() -> int:

@@ -139,7 +139,9 @@ def _premature_end(tokens: list[Token], accepts: set[str], draft: Draft) -> Stat
                     meant = draft.phrases[near]
                     corrected = " ".join(("_".join(words[:at]), meant, "_".join(words[at + 1 :])))
                     whole = corrected if len(tokens) == 1 else None
-                    return StatementError(span_of(tokens), message, f"did you mean '{meant}' by '{word}'?", whole)
+                    return StatementError(
+                        span_of(tokens), message, f"did you mean '{meant}' instead of '{word}'?", whole
+                    )
         return StatementError(span_of(tokens), message, RELATION_EXPECTED)
     if last.type == "IS":
         return StatementError(where, f"expected a kind of thing or a relation after '{last}'")

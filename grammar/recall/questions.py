@@ -183,7 +183,7 @@ def _not_understood(text: str) -> RecallQuestionError:
     wordings = {_plain(each): each for each in WORDINGS}
     examples = " or ".join(f"'{wordings[each]}'" for each in near)
     return RecallQuestionError(
-        f"the question '{' '.join(text.split())[:80]}' is not understood; say it as in {examples}"
+        f"the question '{' '.join(text.split())[:80]}' is not understood; ask, for example, {examples}"
     )
 
 

@@ -1,4 +1,4 @@
-"""Read scenes from COCO instance annotations: ``images``, ``annotations`` and ``categories`` in one JSON file.
+"""Read and write scenes as COCO instance annotations: ``images``, ``annotations`` and ``categories`` in one JSON file.
 
 The format: https://cocodataset.org/#format-data. Each annotation of the chosen image becomes an object, except crowds
 (``"iscrowd": 1``), which outline several objects at once and are skipped without a note. The box is the ``bbox``
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import ceil
 from typing import Any
 
 from deixis.ontology.strict_json import json_type
@@ -101,6 +102,56 @@ def coco_scene(data: Mapping[str, Any], file: str, image: str | int | None = Non
                 points, place = _polygons(entry.get("segmentation"), where), f"{where}: 'segmentation'"
             boxes.append(box_around(points, place, label, score(entry, where)))
     return image_scene(boxes, chosen.height, file)
+
+
+def scene_to_coco(scene: Scene, size: tuple[int, int] | None = None, file_name: str | None = None) -> dict[str, Any]:
+    """Return the COCO instance annotations of a scene in pixels, with one image and y downward.
+
+    Parameters
+    ----------
+    scene
+        A scene in pixels, with y upward.
+    size
+        Width and height of the image in pixels; None for the smallest image that holds all boxes.
+    file_name
+        File name of the image.
+
+    Returns
+    -------
+    dict
+        ``images``, ``annotations`` in the order of the objects, with ids from 1, and ``categories``. An object without
+        a label has the category null; a confidence below 1 is the ``score``.
+
+    Raises
+    ------
+    SceneError
+        If the scene is not in pixels.
+    """
+    if scene.unit != "px":
+        raise SceneError(f"{scene.file}: COCO boxes must be in pixels, and this scene is in metres")
+    corners = [thing.maximum for thing in scene.objects]
+    width, height = size or (ceil(max((top[k] for top in corners), default=1.0)) for k in (0, 1))
+    labels = list(dict.fromkeys(thing.label for thing in scene.objects if thing.label is not None))
+    annotations: list[dict[str, Any]] = []
+    for id, thing in enumerate(scene.objects, start=1):
+        (left, low), (right, top) = thing.minimum[:2], thing.maximum[:2]
+        category = None if thing.label is None else labels.index(thing.label) + 1
+        box = [left, height - top, right - left, top - low]
+        entry = {
+            "id": id,
+            "image_id": 1,
+            "category_id": category,
+            "bbox": box,
+            "area": box[2] * box[3],
+            "iscrowd": 0,
+        }
+        annotations.append(entry if thing.confidence == 1 else entry | {"score": thing.confidence})
+    image = {"id": 1, "width": width, "height": height}
+    return {
+        "images": [image if file_name is None else image | {"file_name": file_name}],
+        "categories": [{"id": id, "name": label} for id, label in enumerate(labels, start=1)],
+        "annotations": annotations,
+    }
 
 
 def _images(data: Mapping[str, Any], file: str) -> list[_Image]:

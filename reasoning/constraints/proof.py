@@ -49,7 +49,7 @@ class Proof(Generic[Claim]):
     >>> proper = Proof("a.start < a.finish", Rule.PROPER_INTERVAL)
     >>> print(*Proof("a.start < 5", Rule.SHORTEST_PATH, (stated, proper)).lines(), sep="\n")
     a.start < 5   by shortest path
-        a.finish <= 5   by stated   [t.json: fluents[0].finish]
+        a.finish <= 5   stated   [t.json: fluents[0].finish]
         a.start < a.finish   by proper interval
     """
 
@@ -104,7 +104,8 @@ class Proof(Generic[Claim]):
         for proof, depth, again in self._walk():
             place = f"   [{proof.source}]" if proof.source else ""
             above = ", as above" if again and proof.premises else ""
-            yield f"{indent}{'    ' * depth}{proof.claim}   by {proof.rule}{above}{place}"
+            rule = proof.rule if proof.rule is Rule.STATED else f"by {proof.rule}"
+            yield f"{indent}{'    ' * depth}{proof.claim}   {rule}{above}{place}"
 
     def _walk(self) -> Iterator[tuple[Proof[Claim], int, bool]]:
         """Yield each proof in the order of print, its depth, and whether it occurred before.

@@ -44,8 +44,8 @@ def facts_of_graded_words(vocabulary: Relations, stated: Iterable[tuple[int, Fac
     >>> found = facts_of_graded_words(r, enumerate(said))
     >>> print(*found["inside", "key", "bag"][0].lines(), sep="\n")
     inside(key, bag)   by transitivity
-        inside(key, box)   by stated
-        inside(box, bag)   by stated
+        inside(key, box)   stated
+        inside(box, bag)   stated
     """
     known: Known = {}
     waiting: deque[tuple[Relation, str, str]] = deque()

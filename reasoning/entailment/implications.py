@@ -69,9 +69,9 @@ class Implications:
     >>> implied = Implications(RelationGraph.from_facts(r, ["fork", "plate", "napkin"], facts))
     >>> print(*implied.derive(r["left"], "fork", "napkin").lines(), sep="\n")
     left(fork, napkin)   by composition
-        left(fork, plate)   by stated
+        left(fork, plate)   stated
         under(plate, napkin)   by inverse
-            on(napkin, plate)   by stated
+            on(napkin, plate)   stated
     """
 
     def __init__(self, graph: RelationGraph, time_limit: float = TIME_LIMIT, cases: bool = True) -> None:

@@ -59,7 +59,8 @@ if TYPE_CHECKING:
     from deixis.workflows.layouts.read import read_script
     from deixis.workflows.scenes.perceive import perceive, write_scene
     from deixis.workflows.scenes.point import Shown, point
-    from deixis.workflows.scenes.simulate import simulate
+    from deixis.workflows.scenes.simulate import Simulation, simulate
+    from deixis.workflows.scenes.track import Tracking
 
 __version__ = VERSION
 __all__ = [
@@ -94,9 +95,11 @@ __all__ = [
     "Script",
     "Session",
     "Shown",
+    "Simulation",
     "Taught",
     "Telling",
     "Told",
+    "Tracking",
     "Unlearned",
     "ask",
     "check",
@@ -149,9 +152,11 @@ _HOMES = {
     "Script": "deixis.grammar.script",
     "Session": "deixis.session",
     "Shown": "deixis.workflows.scenes.point",
+    "Simulation": "deixis.workflows.scenes.simulate",
     "Taught": "deixis.learning.views.views",
     "Telling": "deixis.workflows.descriptions.telling",
     "Told": "deixis.robot.robot",
+    "Tracking": "deixis.workflows.scenes.track",
     "Unlearned": "deixis.workflows.knowledge.unlearn",
     "ask": "deixis.workflows.grounding.ask",
     "check": "deixis.workflows.grounding.check",

@@ -478,7 +478,7 @@ class Session(Closing):
         scene
             The scene, the path of its file, or its content as a mapping.
         progress
-            Called while views are read and calibrated, which takes seconds for many views.
+            Called while views are read and calibrated, which takes seconds for many views, then for each thing.
         left_out
             Called with a line about damaged views, which teach nothing.
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from typing import get_type_hints
 
+import numpy as np
 import pytest
 
 import deixis
@@ -12,6 +14,7 @@ from deixis.answers import Answer, share
 from deixis.errors import DeixisError
 from deixis.extras import MissingExtraError
 from deixis.perception.simulator.laying import truth_scene
+from deixis.perception.tracking.situation import TrackedThing
 from deixis.report.renderers import RENDERERS, to_rows
 from deixis.workflows.layouts.lay_table import lay_script
 
@@ -32,6 +35,9 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
         told, look = robot.told(SCRIPT, at=1.0), robot.look()
         assert repr(robot) == "<Robot: 12 things in view, 1 layout known>"
         assert repr(robot.layouts["formal_dinner"]) == "<LearnedLayout 'formal_dinner': 12 roles, 1 table>"
+    box, cloud = np.array([[0.0, 0.0, 0.0], [0.1, 0.1, 0.1]]), deixis.PointCloud(np.zeros((1, 3), np.float32))
+    oriented = deixis.OrientedBox((0.05, 0.05, 0.05), 0.0, (0.1, 0.1, 0.1))
+    thing = TrackedThing("t1", box, oriented, cloud, np.eye(4), 1.0, 0.0, 0.0, 0.1, "seen", moving=False)
     return {
         "Told": told,
         "Look": look,
@@ -49,6 +55,8 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
         "Retrieval": deixis.retrieve(SCENE, "examples"),
         "Lint": deixis.lint("examples/contradiction.layout"),
         "Telling": deixis.tell(SCRIPT),
+        "Simulation": deixis.simulate(SCRIPT, seed=7),
+        "Tracking": deixis.Tracking((thing,), (thing,), frames=2, seconds=0.1),
     }
 
 
@@ -85,7 +93,8 @@ def test_tables_have_a_row_for_each_thing(answers: dict[str, Answer]) -> None:
     ]
     assert len(rows["Script"]) == len(SCRIPT.facts)
     assert len(rows["Scene"]) == len(rows["Imagination"]) == len(rows["Learned"]) == 12
-    assert len(rows["Look"]) == len(rows["Told"]) == 12
+    assert len(rows["Look"]) == len(rows["Told"]) == len(rows["Simulation"]) == 12
+    assert [row["state"] for row in rows["Tracking"]] == ["seen", "gone"]
     assert len(rows["LayoutConcept"]) == len(rows["CountedConcept"]) == len(SCRIPT.facts)
     assert {row["verdict"] for row in rows["Check"]} == {"correct", "missing", "misplaced", "extra"}
     assert all(len(set(map(tuple, table))) >= 1 for table in rows.values())
@@ -126,7 +135,7 @@ def test_pictures_go_into_given_axes(answers: dict[str, Answer]) -> None:
 
 def test_pictures_are_png_in_notebooks(answers: dict[str, Answer]) -> None:
     pytest.importorskip("matplotlib")
-    for name in ("Grounding", "Scene", "Check", "Imagination", "Learned", "Look", "Told"):
+    for name in ("Grounding", "Scene", "Check", "Imagination", "Learned", "Look", "Told", "Simulation"):
         shown = answers[name]._repr_png_()
         assert shown is not None
         assert shown.startswith(PNG)
@@ -155,3 +164,9 @@ def test_a_script_given_as_a_file_name_is_explained() -> None:
 )
 def test_shares_are_said_in_words(part: int, total: int, words: str) -> None:
     assert share(part, total, "name") == words
+
+
+def test_exported_functions_return_exported_answers() -> None:
+    functions = [member for name in deixis.__all__ if inspect.isfunction(member := getattr(deixis, name))]
+    returned = {inspect.signature(function).return_annotation for function in functions}
+    assert all(issubclass(getattr(deixis, name), Answer) for name in returned - {"str"})

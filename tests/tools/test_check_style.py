@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from check_style import python_findings, text_findings
+from check_style import description_findings, python_findings, text_findings
 
 HERE = Path("module.py")
 
@@ -58,3 +58,12 @@ def test_code_in_pages_is_not_checked() -> None:
 def test_names_of_tests_have_a_longest_length() -> None:
     assert len(messages(f"def test_{'x' * 60}():\n    pass\n")) == 1
     assert messages(f"def test_{'x' * 55}():\n    pass\n") == []
+
+
+def test_descriptions_in_other_languages_are_checked() -> None:
+    turtle = 'dx:Fork a owl:Class ;\n    skos:definition "What people eat with."@en .\n'
+    (found,) = description_findings(Path("words.ttl"), turtle)
+    assert str(found) == "words.ttl:2: description opens with 'What': say what it is or does"
+    (found,) = description_findings(Path("a.json"), '{"description": "A text put in the place of another"}')
+    assert "write instead of" in found.message
+    assert not list(description_findings(Path("a.json"), '{"description": "True if there is no fault"}'))

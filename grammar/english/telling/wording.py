@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from deixis.grammar.reading import StatedFact
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
+from deixis.ontology.inflection import plural
 from deixis.ontology.relations.relation import Relation
 from deixis.ontology.tbox import default_ontology
 
@@ -242,6 +243,11 @@ def clause_of_claim(claim: Claim, be: str, name: Namer = name_plainly) -> str:
     -------
     str
         Clause without a capital letter and a full stop.
+
+    Examples
+    --------
+    >>> clause_of_claim(Claim("count", ("wine_glass_1", "wine_glass_2"), value="2"), "are")
+    'there are 2 wine glasses: the wine glass 1 and the wine glass 2'
     """
     subjects = name(claim.subjects)
     if claim.relation.startswith("none_"):
@@ -252,7 +258,10 @@ def clause_of_claim(claim: Claim, be: str, name: Namer = name_plainly) -> str:
         return f"from {claim.value}: {subjects}"
     if claim.value == "0":
         return f"there is no {claim.subjects[0].replace('_', ' ')}"
-    return f"there {be} {claim.value}: {subjects}"
+    stems = {name.rpartition("_")[0].replace("_", " ") for name in claim.subjects}
+    kind = stems.pop() if len(stems) == 1 else ""
+    counted = f"{claim.value} {plural(kind) if kind and claim.value != '1' else kind}".rstrip()
+    return f"there {be} {counted}: {subjects}"
 
 
 def auxiliary(stated: StatedFact, plural: bool = False) -> str:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -142,27 +141,6 @@ def require_memory(folder: Path | None) -> None:
     with Session(folder) as session:
         if not session.has_views() and not session.remembers():
             session.memory()  # raises MemoryFormatError
-
-
-@contextmanager
-def working(what: str, after: float = 0.0) -> Iterator[None]:
-    """Show a spinner with a text on a terminal's standard error, ``after`` seconds, for work of unknown length."""
-    if not sys.stderr.isatty():
-        yield
-        return
-    from threading import Timer
-
-    from rich.console import Console
-
-    status = Console(file=terminal(sys.stderr)).status(what)
-    begin = Timer(after, status.start)
-    begin.start()
-    try:
-        yield
-    finally:
-        begin.cancel()
-        begin.join()
-        status.stop()
 
 
 def deadline_of(time_limit: float) -> Deadline:

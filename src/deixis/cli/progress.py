@@ -5,11 +5,13 @@ The bar appears after :data:`PATIENCE` seconds and goes when the work ends. It h
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import Event, Thread, Timer
+from threading import Event, Lock, Thread, Timer
+from typing import Any, TextIO
 
 from deixis.cli.output import terminal
 
@@ -18,6 +20,54 @@ PATIENCE = 2.0
 
 SECONDS_SHOWN = 0.5
 """Seconds between two updates of a bar that shows a time limit."""
+
+
+class _LateBar:
+    """Progress bar that is made when the work has taken :data:`PATIENCE` seconds, so that short work stays fast."""
+
+    def __init__(self, what: str, stream: TextIO) -> None:
+        self._stream, self._begun = stream, time.monotonic()
+        self._state: tuple[int, int | None, str] = (0, None, what)
+        self._bar: Any = None
+        self._lock = Lock()
+        self._timer = Timer(PATIENCE, self._appear)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def report(self, done: int, total: int | None, step: str | None = None) -> None:
+        """Show how many steps are done, of how many, and optionally the name of the step."""
+        with self._lock:
+            self._state = (done, total, self._state[2] if step is None else step)
+            if self._bar is not None:
+                self._bar.update(self._bar.tasks[0].id, completed=done, total=total, description=self._state[2])
+
+    def close(self) -> None:
+        """Remove the bar; it does not appear any more."""
+        self._timer.cancel()
+        self._timer.join()
+        if self._bar is not None:
+            self._bar.stop()
+
+    def _appear(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+        from rich.progress import Progress as Bar
+
+        columns = (
+            TextColumn("{task.description}", markup=False),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("left:"),
+            TimeRemainingColumn(),
+        )
+        bar = Bar(*columns, console=Console(file=self._stream), transient=True)
+        with self._lock:
+            done, total, step = self._state
+            bar.add_task(step, total=total, completed=done)
+            bar.tasks[0].start_time = bar.get_time() - (time.monotonic() - self._begun)
+            bar.start()
+            self._bar = bar
 
 
 @contextmanager
@@ -29,32 +79,11 @@ def progress_bar(what: str) -> Iterator[Callable[..., None] | None]:
     if not sys.stderr.isatty():
         yield None
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
-
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left:"),
-        TimeRemainingColumn(),
-    )
-    with Bar(*columns, console=Console(file=terminal(sys.stderr)), transient=True) as bar:
-        task = bar.add_task(what, total=None, visible=False)
-        appear = Timer(PATIENCE, lambda: bar.update(task, visible=True))
-        appear.daemon = True
-        appear.start()
-
-        def progress(done: int, total: int, step: str = what) -> None:
-            bar.update(task, completed=done, total=total, description=step)
-
-        try:
-            yield progress
-        finally:
-            appear.cancel()
-            appear.join()
+    bar = _LateBar(what, terminal(sys.stderr))
+    try:
+        yield bar.report
+    finally:
+        bar.close()
 
 
 @contextmanager
@@ -86,8 +115,14 @@ def stage_bar(*stages: str) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def time_bar(what: str, limit: float) -> Iterator[None]:
-    """Show a progress bar of the seconds of a time limit, for work whose steps cannot be counted."""
+def time_bar(what: str, limit: float, source: str | None = None) -> Iterator[None]:
+    """Show a progress bar of the seconds of a time limit, for work whose steps cannot be counted.
+
+    There is no bar while a user types the ``source`` of the work, which is then ``-``.
+    """
+    if source == "-" and sys.stdin is not None and sys.stdin.isatty():
+        yield
+        return
     with progress_bar(what) as progress:
         if progress is None:
             yield
@@ -96,7 +131,9 @@ def time_bar(what: str, limit: float) -> Iterator[None]:
 
         def run() -> None:
             while not ended.wait(SECONDS_SHOWN):
-                progress(min(round(time.monotonic() - begun), round(limit)), round(limit), f"{what}, seconds")
+                seconds = time.monotonic() - begun
+                shown = (round(seconds), None) if math.isinf(limit) else (round(min(seconds, limit)), round(limit))
+                progress(*shown, f"{what}, seconds")
 
         clock = Thread(target=run, daemon=True)
         clock.start()

@@ -54,7 +54,7 @@ def fixes(document: Document, problems: Iterable[Problem]) -> Iterator[Fix]:
     """
     for problem in problems:
         if problem.replacement is not None:
-            title = f"Replace by '{problem.replacement}'"
+            title = f"Replace with '{problem.replacement}'"
             yield Fix(title, problem, (Edit(problem.source, problem.replacement),))
         elif problem.code in ("F001", "F002"):
             span = _removable(document, problem.source)

@@ -106,7 +106,7 @@ def english_fixes(problems: Iterable[Problem]) -> Iterator[Fix]:
     for problem in problems:
         if problem.replacement is not None:
             edit = Edit(problem.source, problem.replacement.replace("_", " "))
-            yield Fix(f"Replace by '{edit.text}'", problem, (edit,))
+            yield Fix(f"Replace with '{edit.text}'", problem, (edit,))
 
 
 def english_completions(document: EnglishText, line: int, column: int) -> list[Completion]:

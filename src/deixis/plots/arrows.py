@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.figure import QUIET
+from deixis.plots.figure import INK, QUIET
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -183,31 +183,52 @@ def _point(place: NDArray[np.float64]) -> Point:
     return float(place[0]), float(place[1])
 
 
-def draw_directions(axes: Axes, scene: Scene, colour: str) -> None:
-    """Draw a short arrow on each thing whose front, head or handle is known, from above.
+DIRECTIONS = "arrow on a thing: its front, or the head of a long thing"
+"""Explanation of the arrows of :func:`directions`."""
+
+
+def directions(scene: Scene) -> list[Arrow]:
+    """Return a short arrow on each thing whose front or head is known, from above.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Returns
+    -------
+    list of Arrow
+        The arrows, in the unit of the scene.
+    """
+    poses = scene.poses
+    arrows: list[Arrow] = []
+    for box, way in [] if poses is None else zip(scene.boxes[:, :, :2], poses.pointing, strict=True):
+        if not np.isnan(way).any():
+            sides, middle = (box[1] - box[0]) / 2, box.mean(axis=0)
+            reach = min(side / abs(part) for side, part in zip(sides, way, strict=True) if abs(part) > 1e-9)
+            arrows.append((_point(middle + 0.35 * reach * way), _point(middle + 0.95 * reach * way)))
+    return arrows
+
+
+def draw_directions(axes: Axes, arrows: Sequence[Arrow], colour: str) -> None:
+    """Draw the arrows of :func:`directions`, and explain them below the axis, whose label is set before.
 
     Parameters
     ----------
     axes
         Axes of a scene seen from above.
-    scene
-        The scene.
+    arrows
+        The arrows.
     colour
         Colour of the arrows.
     """
     from matplotlib.patches import FancyArrowPatch
 
-    poses = scene.poses
-    if poses is None:
-        return
-    known = [i for i, way in enumerate(poses.pointing) if not np.isnan(way).any()]
-    for i in known:
-        way, sides = poses.pointing[i], np.diff(scene.boxes[i, :, :2], axis=0)[0] / 2
-        middle = scene.boxes[i, :, :2].mean(axis=0)
-        reach = min(side / abs(part) for side, part in zip(sides, way, strict=True) if abs(part) > 1e-9)
-        ends = (tuple(middle + share * reach * way) for share in (0.35, 0.95))
+    for ends in arrows:
         arrow = FancyArrowPatch(
             *ends, arrowstyle="-|>", mutation_scale=8, color=colour, linewidth=1.0, shrinkA=0, shrinkB=0, zorder=4
         )
         arrow.set_in_layout(False)
         axes.add_patch(arrow)
+    if arrows:
+        axes.set_xlabel(f"{axes.get_xlabel()}\n{DIRECTIONS}", color=INK)

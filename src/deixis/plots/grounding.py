@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.arrows import Arrow, Ends, draw_arrows, draw_directions, drawing_order, points_along
+from deixis.plots.arrows import Arrow, Ends, directions, draw_arrows, draw_directions, drawing_order, points_along
 from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress_table, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding
@@ -197,7 +197,7 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
     """Draw what a robot concludes about a table: the name of each thing, and what is wrong.
 
     Names below 0.99 have their probabilities and faded edges. Things that are in a mistake have an edge of their own
-    colour; the title says what is wrong.
+    colour; the title says what is wrong. Ghosts show where missing, displaced and swapped things belong.
 
     Parameters
     ----------
@@ -211,6 +211,9 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
     Figure
         The figure.
     """
+    from matplotlib.patches import Patch
+
+    own_figure = axes is None
     figure, axes = canvas(axes, WIDTH, _table_height(look.scene) + 1.3)
     faults = look.faults()
     labels, sureness = {}, {}
@@ -221,8 +224,15 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
             labels[thing] = name if names[name] >= DECIDED else f"{name} {probability_text(names[name])}"
     marks = Marks(wrong={thing for fault in faults for thing in fault.things})
     _draw_boxes(axes, look.scene, labels, {}, marks, sureness)
+    moved = {role: thing for fault in faults for role, thing in zip(fault.names, fault.things, strict=False)}
+    places = look.places()
+    ghosts, ways = _draw_ghosts(axes, look.scene, moved, places)
+    keys = [Patch(facecolor=PAPER, edgecolor=WRONG, label="in a mistake")] if marks.wrong else []
+    keys += _ghost_keys(places, moved)
+    if keys and own_figure:
+        figure.legend(loc="outside lower center", handles=keys, fontsize=8, frameon=False, ncols=2)
     title = "no known layout" if look.layout is None else "; ".join((f"'{look.layout}'", *map(str, faults)))
-    _finish(figure, axes, look.scene, labels, (), title)
+    _finish(figure, axes, look.scene, labels, points_along(ways, WAY_BEND), title, ghosts)
     return figure
 
 
@@ -258,7 +268,8 @@ def grounding_figure(
     names = {match.perceived: match.object for match in found.matches.values()}
     sureness = {match.perceived: match.sureness for match in found.matches.values()}
     _draw_boxes(axes, scene, names, colours, marks, sureness)
-    ghosts, ways = _draw_ghosts(axes, scene, found, marks.belongs)
+    things = {match.object: match.perceived for match in found.matches.values()}
+    ghosts, ways = _draw_ghosts(axes, scene, things, marks.belongs)
     ends = Ends(scene.objects)
     satisfied, violated = _arrows(found.satisfied, ends), _arrows(found.violated, ends)
     draw_arrows(axes, satisfied, QUIET, 0.8, 3)
@@ -273,12 +284,29 @@ def grounding_figure(
     ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
     clear = [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS]), *points_along(ways, WAY_BEND)]
     labels = {match.perceived: _doubtful_label(match, names, colours) for match in found.matches.values()}
-    _finish(figure, axes, scene, labels, clear, title, ghosts, _words(found.violated, ends))
+    shown = _with_ids(scene, {id for match in found.matches.values() for id in _alternatives(match) if id not in names})
+    _finish(figure, axes, shown, labels, clear, title, ghosts, _words(found.violated, ends))
     return figure
 
 
 MAX_ALTERNATIVES = 2
 """Maximum number of alternatives in the label of an undecided match."""
+
+
+def _alternatives(match: Match) -> list[str]:
+    """Return the ids of the things in the label of an undecided match."""
+    return [other.perceived for other in match.alternatives[:MAX_ALTERNATIVES] if other.perceived is not None]
+
+
+def _with_ids(scene: Scene, ids: Collection[str]) -> Scene:
+    """Return a scene in which the labels of some things are followed by the ids that other labels refer to."""
+    return replace(
+        scene,
+        objects=tuple(
+            replace(thing, label=f"{thing.label} ({thing.id})") if thing.label and thing.id in ids else thing
+            for thing in scene.objects
+        ),
+    )
 
 
 def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str, str]) -> str:
@@ -293,14 +321,11 @@ def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str
     label = match.object if match.probability is None else f"{match.object} {probability_text(match.probability)}"
     if match.object in colours or not match.alternatives:
         return label
-    others = [
-        "absent" if other.perceived is None else names.get(other.perceived, other.perceived)
-        for other in match.alternatives[:MAX_ALTERNATIVES]
-    ]
-    places = [other for other in others if other != "absent"]
+    others = match.alternatives[:MAX_ALTERNATIVES]
+    places = [names.get(id, id) for id in _alternatives(match)]
     where = [f"at {', '.join(places)}"] if places else []
     where += ["absent"] if len(places) < len(others) else []
-    return f"{label}\nor {' or '.join(where)}{', …' if len(match.alternatives) > len(others) else ''}"
+    return f"{label}\nor {', or '.join(where)}{', …' if len(match.alternatives) > len(others) else ''}"
 
 
 def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, Arrow]]:
@@ -310,9 +335,9 @@ def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, Arrow]
 
 
 def _draw_ghosts(
-    axes: Axes, scene: Scene, found: Grounding, belongs: Mapping[str, NDArray[np.float64]]
+    axes: Axes, scene: Scene, things: Mapping[str, str], belongs: Mapping[str, NDArray[np.float64]]
 ) -> tuple[list[PerceivedObject], list[Arrow]]:
-    """Draw where objects belong, and the ways there; return the ghosts, to be named, and the ways."""
+    """Draw where objects belong, and the ways there from their ``things``; return the named ghosts and the ways."""
     from matplotlib.patches import FancyArrowPatch, Rectangle
 
     boxes = {thing.id: box for thing, box in zip(scene.objects, scene.boxes[:, :, :2], strict=True)}
@@ -321,11 +346,11 @@ def _draw_ghosts(
         look: dict[str, Any] = {"edgecolor": BELONGS, "facecolor": BELONGS, "linestyle": (0, (2, 2)), "linewidth": 1.4}
         axes.add_patch(Rectangle(tuple(low), *(high - low), fill=False, zorder=6, **look))
         axes.add_patch(Rectangle(tuple(low), *(high - low), alpha=0.08, linewidth=0, color=BELONGS, zorder=1.5))
-        match = found.matches.get(name)
-        if match is None:
+        thing = things.get(name)
+        if thing is None:
             ghosts.append(PerceivedObject(f"ghost of {name}", tuple(low), tuple(high), label=f"{name} belongs here"))
             continue
-        start, end = boxes[match.perceived].mean(axis=0).tolist(), ((low + high) / 2).tolist()
+        start, end = boxes[thing].mean(axis=0).tolist(), ((low + high) / 2).tolist()
         ways.append(((start[0], start[1]), (end[0], end[1])))
         way = FancyArrowPatch(
             *ways[-1],
@@ -364,9 +389,11 @@ def _finish(
     axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
     axes.margins(0.06)
     dress_table(axes, scene, title and textwrap.fill(title, TITLE_LINE))
+    heads = directions(scene)
+    draw_directions(axes, heads, INK)
     named = [replace(thing, label=names.get(thing.id) or thing.label or thing.id) for thing in scene.objects]
     quiet = {thing.id for thing in scene.objects if thing.id not in names}
-    write_names(figure, axes, [*named, *ghosts], quiet, clear, words)
+    write_names(figure, axes, [*named, *ghosts], quiet, [*clear, *points_along(heads, bend=0.0)], words)
 
 
 def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[Arrow]:
@@ -397,7 +424,6 @@ def _draw_boxes(
         PatchCollection(edges, match_original=True, zorder=2),
     ):
         axes.add_collection(boxes)
-    draw_directions(axes, scene, INK)
 
 
 def _rectangle(thing: PerceivedObject, **look: Any) -> Rectangle:
@@ -420,6 +446,19 @@ def _edge(thing: str, name: str | None, colours: Mapping[str, str], marks: Marks
     return {"fill": False, "edgecolor": edge, "linewidth": 1.2, "linestyle": style, "alpha": alpha}
 
 
+def _ghost_keys(belongs: Collection[str], matched: Collection[str]) -> list[Any]:
+    """Return the entries of the legend for the ghosts, and for the ways to them from the objects on the table."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    keys: list[Any] = []
+    if belongs:
+        keys.append(Patch(facecolor=PAPER, edgecolor=BELONGS, linestyle=(0, (2, 2)), label="where it belongs"))
+    if any(name in matched for name in belongs):
+        keys.append(Line2D([], [], color=BELONGS, linestyle=(0, (4, 2)), label="move it there"))
+    return keys
+
+
 def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> list[Any]:
     """Return the entries of the legend: facts, marks, and the first groups of interchangeable objects."""
     from matplotlib.lines import Line2D
@@ -432,10 +471,7 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))
     if marks.wrong:
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, label="misplaced, or (dashed) extra"))
-    if marks.belongs:
-        keys.append(Patch(facecolor=PAPER, edgecolor=BELONGS, linestyle=(0, (2, 2)), label="where it belongs"))
-    if marks.belongs.keys() & found.matches.keys():
-        keys.append(Line2D([], [], color=BELONGS, linestyle=(0, (4, 2)), label="move it there"))
+    keys += _ghost_keys(marks.belongs, found.matches)
     if marks.miscoloured:
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, linewidth=0, hatch=HATCH, label="of another colour"))
     if marks.unsure:

@@ -127,7 +127,9 @@ def _draw(axes: Axes, moment: Moment) -> None:
     for side in axes.spines.values():
         side.set_color(QUIET)
     layout = f", laid as '{moment.layout.replace('_', ' ')}'" if moment.layout else ""
-    axes.set_title(f"{moment.at:.1f} s: {len(moment.things)} things{layout}", fontsize=9, loc="left", color=INK)
+    pointed = "; orange: pointed at" if moment.pointed else ""
+    title = f"{moment.at:.1f} s: {len(moment.things)} things{layout}{pointed}"
+    axes.set_title(title, fontsize=9, loc="left", color=INK)
     if moment.view is not None and moment.view.exists():
         with np.load(moment.view) as view:
             _draw_view(axes, moment, view["image"], view["owner"], view["ids"].tolist())

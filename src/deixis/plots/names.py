@@ -335,22 +335,30 @@ def crosses(segment: Segment, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _write_word(figure: Figure, axes: Axes, word: str, arrow: Arrow, taken: list[Box]) -> None:
-    """Write a word beside the middle of its arrow, or a little before or after it, where it covers no name."""
+    """Write a word beside the middle of its arrow, or a little before or after it, where it covers no name.
+
+    Where possible, it covers neither end of the arrow.
+    """
     from matplotlib import patheffects
 
     width, height = _measured(figure, word)
     points = axes.transData.transform(np.array(points_along([arrow])))
-    for share, side in product((0.5, 0.35, 0.65), (0.7, -0.7, 0.0)):
+    ends = np.hstack([points[[0, -1]] - POINT / 2, points[[0, -1]] + POINT / 2])
+    places = []
+    for share, side in product((0.5, 0.35, 0.65), (0.7, -0.7, 1.4, -1.4, 0.0)):
         x, y = points[round(share * (len(points) - 1))].tolist()
         y += side * height
-        box = Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
-        if not box.shared(np.array(taken).reshape(-1, 4)).any():
-            taken.append(box)
-            at_x, at_y = axes.transData.inverted().transform((x, y)).tolist()
-            look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": FONT - 0.5, "color": WRONG}
-            stroke = [patheffects.withStroke(linewidth=2.2, foreground=PAPER)]
-            axes.text(at_x, at_y, word, zorder=950, path_effects=stroke, **look)
-            return
+        places.append(Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2))
+    free = [box for box in places if not box.shared(np.array(taken).reshape(-1, 4)).any()]
+    if not free:
+        return
+    box = next((box for box in free if not box.shared(ends).any()), free[0])
+    taken.append(box)
+    middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
+    x, y = axes.transData.inverted().transform(middle).tolist()
+    look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": FONT - 0.5, "color": WRONG}
+    stroke = [patheffects.withStroke(linewidth=2.2, foreground=PAPER)]
+    axes.text(x, y, word, zorder=950, path_effects=stroke, **look)
 
 
 def _write(axes: Axes, name: str, place: NamePlace, leader: Segment | None, quiet: bool) -> None:

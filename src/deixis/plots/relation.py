@@ -103,13 +103,13 @@ def relation_figure(relation: Relation, models: RelationModels, steps: int = 181
     axes.set_aspect("equal")
     axes.set_xlabel("subject's centre, in widths of the reference; right as seen from the chair", fontsize=8.5)
     axes.set_ylabel("away from the chair", fontsize=8.5)
-    title = f"How well '{relation.phrase}' holds, {_origin(models.of(relation))}"
+    title = f"Degree to which '{relation.phrase}' holds ({_origin(models.of(relation))})"
     axes.set_title(title, color=INK, fontsize=12, loc="left", parse_math=False)
     axes.tick_params(colors=INK, labelsize=8)
     bar = figure.colorbar(shown, cax=axes.inset_axes((1.03, 0.0, 0.045, 1.0)), ticks=[0, *LINES, 1], format="%g")
     bar.add_lines(lines)
     bar.ax.tick_params(colors=INK, labelsize=8)
-    bar.set_label("degree; lines as in the field", color=INK, fontsize=8.5)
+    bar.set_label("degree; the lines are contours of the field", color=INK, fontsize=8.5)
     return figure
 
 
@@ -121,7 +121,7 @@ def _origin(model: RelationModel) -> str:
     """Return whether a meaning is shipped, or from how many facts it was learned."""
     origin = model.provenance
     if origin.made is None:
-        return "as shipped"
+        return "shipped model"
     number = round(origin.examples, 1)
     return f"learned from {number:g} {'fact' if number == 1 else 'facts'}"
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import PlaneSettings
-from deixis.plots.arrows import draw_directions
+from deixis.plots.arrows import directions, draw_directions, points_along
 from deixis.plots.camera import MARGIN, CameraPicture, camera_of, colours_of, draw_camera
 from deixis.plots.figure import INK, canvas, dress_table, new_figure, save
 from deixis.plots.grounding import scene_figure
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from deixis.learning.views.views import Recognised
     from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Detected, PerceivedObject, Scene
+    from deixis.workflows.scenes.simulate import Simulation
 
 MAX_POINTS = 60_000
 """Maximum number of points to draw of the things, and of the table."""
@@ -46,7 +47,10 @@ HEIGHT, MAX_WIDTH = 5.4, 12.5
 MAX_NAME_LENGTH = 32
 """Maximum number of characters of a name."""
 
-LEGEND = "Number: the probability of the name ('?': too small to say it); of 'unknown', that no name known is right."
+LEGEND = (
+    "The number is the probability of the name; '?' marks a name that is not certain enough.\n"
+    "For 'unknown', it is the probability that none of the known names is right."
+)
 
 Window = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Least and greatest x and y of the picture, in metres."""
@@ -90,6 +94,24 @@ def seen_figure(scene: Scene, axes: Axes | None = None) -> Figure:
     return perceived_figure(scene)
 
 
+def simulation_figure(found: Simulation, axes: Axes | None = None) -> Figure:
+    """Draw the true scene of a simulation from above.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis simulate``.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    return scene_figure(found.truth, axes)
+
+
 def perceived_figure(scene: Scene) -> Figure:
     """Return the picture of :func:`plot_perceived` as a new figure.
 
@@ -125,13 +147,15 @@ def perceived_figure(scene: Scene) -> Figure:
     else:
         title = "One thing alone, from above" if scene.objects else "All points, as they stand"
     _dress(axes[0], scene, window, title)
-    draw_directions(axes[0], scene, INK)
     if not scene.objects:
         _say(axes[0], "; ".join(scene.detection.notes) or "nothing was found")
     if not level:
         axes[0].set_xlabel("metres, x of the cloud")
         axes[0].set_ylabel("metres, y of the cloud")
-    write_names(figure, axes[0], [replace(thing, label=thing.label or thing.id) for thing in scene.objects])
+    heads = directions(scene)
+    draw_directions(axes[0], heads, INK)
+    named = [replace(thing, label=thing.label or thing.id) for thing in scene.objects]
+    write_names(figure, axes[0], named, clear=points_along(heads, bend=0.0))
     if camera is not None:
         draw_camera(axes[1], camera)
         write_names(figure, axes[1], camera.things)

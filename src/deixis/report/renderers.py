@@ -147,6 +147,17 @@ RENDERERS = {
         "report.scenes.robot:told_rows",
         "plots.grounding:told_figure",
     ),
+    "Simulation": Renderer(
+        "report.scenes.simulate:simulation_to_dict",
+        "report.scenes.simulate:simulation_lines",
+        "report.scenes.simulate:simulation_rows",
+        "plots.seen:simulation_figure",
+    ),
+    "Tracking": Renderer(
+        "report.scenes.track:tracking_to_dict",
+        "report.scenes.track:tracking_lines",
+        "report.scenes.track:tracking_rows",
+    ),
     "Taught": Renderer("report.scenes.seen:taught_to_dict", "report.scenes.seen:taught_lines"),
     "LayoutConcept": Renderer(
         "report.knowledge.concept:layout_to_dict",

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deixis import answers
 from deixis.answers import Answer, count
@@ -21,7 +22,7 @@ from deixis.ontology.tbox import Ontology
 from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, explain
+from deixis.reasoning.comparison.explanation import NOTHING, Explanation, MistakeKind, explain
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 
@@ -87,6 +88,8 @@ class Look(Answer):
     ...     look = robot.look()
     >>> look.layout, look.name("o1"), list(look.names["o2"]), look.faults()
     ('supper', 'fork', ['plate'], ())
+    >>> look.places()
+    {}
     """
 
     scene: Scene
@@ -167,6 +170,45 @@ class Look(Answer):
                 names = (name,) if name is not None else ()
             found.append(Fault(mistake.kind, names, things))
         return tuple(found)
+
+    def places(self) -> dict[str, NDArray[np.float64]]:
+        """Estimate where the missing, displaced and swapped things of the table belong, seen from above.
+
+        Swapped things belong in each other's places. Any other thing keeps the mean offsets to the things in place that
+        were seen on the tables of the layout; the place is the median over them.
+
+        Returns
+        -------
+        dict
+            A box of shape (2, 2), least and greatest corner in metres, for each role whose place is known. A missing
+            thing has the mean size that was seen.
+        """
+        if self.layout is None:
+            return {}
+        layout, explanation = self.explanations[self.layout]
+        boxes = self.scene.boxes[:, :, :2]
+        centres = boxes.mean(axis=1)
+        places: dict[str, NDArray[np.float64]] = {}
+        wrong: dict[str, int | None] = {}
+        for mistake in explanation.mistakes:
+            if mistake.kind is MistakeKind.SWAPPED:
+                for place, own, other in zip(mistake.roles, mistake.things, mistake.things[::-1], strict=True):
+                    places[layout.roles[place]] = boxes[own] - centres[own] + centres[other]
+            elif mistake.kind in (MistakeKind.MISSING, MistakeKind.DISPLACED):
+                wrong[layout.roles[mistake.roles[0]]] = mistake.things[0] if mistake.things else None
+        in_place = {
+            role: centres[thing]
+            for role, thing in zip(layout.roles, explanation.thing.tolist(), strict=True)
+            if thing != NOTHING and role not in wrong and role not in places
+        }
+        for role, thing in wrong.items():
+            size = layout.experience.size(role) if thing is None else boxes[thing, 1] - boxes[thing, 0]
+            offsets = ((other, layout.experience.offset(other, role)) for other in in_place)
+            known = [in_place[other] + offset for other, offset in offsets if offset is not None]
+            if size is not None and known:
+                centre = np.median(known, axis=0)
+                places[role] = np.stack([centre - size / 2, centre + size / 2])
+        return places
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -12,7 +12,7 @@ Traceback (most recent call last):
     ...
 AssertionError: left(plate, fork) cannot hold, since this does:
     right(plate, fork)   by inverse
-        left(fork, plate)   by stated   [<text>:1:1]
+        left(fork, plate)   stated   [<text>:1:1]
 """
 
 from __future__ import annotations

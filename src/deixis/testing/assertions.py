@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -17,6 +18,27 @@ TIME_LIMIT = 30.0
 """Seconds that an assertion may take; more counts as a failure."""
 
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def _errors_in_the_test(function: Callable[P, T]) -> Callable[P, T]:
+    """Make the errors of bad input point to the line of the test, without the frames inside Deixis."""
+
+    @wraps(function)
+    def call(*args: P.args, **kwargs: P.kwargs) -> T:
+        from deixis.errors import DeixisError
+
+        __tracebackhide__ = True
+        try:
+            return function(*args, **kwargs)
+        except DeixisError as error:
+            raise error.with_traceback(None) from None
+
+    return call
+
+
+@_errors_in_the_test
 def script_of(script: Script | str | Path, folder: Path | None = None) -> Script:
     """Return a script that is given as such, by its file, or as a text.
 
@@ -42,6 +64,7 @@ def script_of(script: Script | str | Path, folder: Path | None = None) -> Script
     return read_script(text=script)
 
 
+@_errors_in_the_test
 def scene_of(scene: Scene | str | Path | Mapping[str, Any], folder: Path | None = None) -> Scene:
     """Return a scene that is given as such, by its file, or as parsed JSON.
 
@@ -66,6 +89,7 @@ def _in(folder: Path | None, name: str | Path) -> Path:
     return Path(name) if folder is None else folder / name
 
 
+@_errors_in_the_test
 def assert_grounds(
     script: Script | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],
@@ -118,7 +142,11 @@ def assert_grounds(
     if unknown:
         known = ", ".join(described.objects)
         raise DeixisError(f"`expected` names '{unknown[0]}', which the script does not mention; it mentions {known}")
-    found = ground(described, scene_of(scene), **{"time_limit": TIME_LIMIT, **options})
+    seen = scene_of(scene)
+    strange = [str(thing) for thing in expected.values() if thing is not None and str(thing) not in seen.ids]
+    if strange:
+        raise DeixisError(f"`expected` names '{strange[0]}', which is not in the scene; it has {', '.join(seen.ids)}")
+    found = ground(described, seen, **{"time_limit": TIME_LIMIT, **options})
     wrong = []
     for name, thing in expected.items():
         match = found.matches.get(name)
@@ -134,6 +162,7 @@ def assert_grounds(
     return found
 
 
+@_errors_in_the_test
 def assert_follows(script: Script | str | Path, fact: str) -> Inference:
     """Assert that a fact follows from a script in the wide reading, or is stated in it.
 
@@ -169,6 +198,7 @@ def assert_follows(script: Script | str | Path, fact: str) -> Inference:
     return inference
 
 
+@_errors_in_the_test
 def assert_not_follows(script: Script | str | Path, fact: str) -> Inference:
     """Assert that a fact does not follow from a script.
 
@@ -202,6 +232,7 @@ def assert_not_follows(script: Script | str | Path, fact: str) -> Inference:
     return inference
 
 
+@_errors_in_the_test
 def assert_consistent(script: Script | str | Path) -> Inference:
     """Assert that a script does not contradict itself.
 
@@ -237,6 +268,7 @@ def assert_consistent(script: Script | str | Path) -> Inference:
     return inference
 
 
+@_errors_in_the_test
 def assert_contradictory(script: Script | str | Path) -> Inference:
     """Assert that a script contradicts itself.
 
@@ -275,6 +307,7 @@ def assert_contradictory(script: Script | str | Path) -> Inference:
     return inference
 
 
+@_errors_in_the_test
 def assert_checks(
     layout: Script | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],

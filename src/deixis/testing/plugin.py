@@ -23,7 +23,11 @@ def deixis_script(request: pytest.FixtureRequest) -> Callable[[str | Path], Scri
     """Reader of scripts: of a file beside the test (a name that ends in ``.layout``), or of a text."""
     from deixis.testing.assertions import script_of
 
-    return lambda script: script_of(script, request.path.parent)
+    def read(script: str | Path) -> Script:
+        __tracebackhide__ = True
+        return script_of(script, request.path.parent)
+
+    return read
 
 
 @pytest.fixture
@@ -31,7 +35,11 @@ def deixis_scene(request: pytest.FixtureRequest) -> Callable[[str | Path | Mappi
     """Reader of scenes: of a file beside the test, or of parsed JSON."""
     from deixis.testing.assertions import scene_of
 
-    return lambda scene: scene_of(scene, request.path.parent)
+    def read(scene: str | Path | Mapping[str, Any]) -> Scene:
+        __tracebackhide__ = True
+        return scene_of(scene, request.path.parent)
+
+    return read
 
 
 @pytest.fixture

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import io
-from contextlib import redirect_stderr
+import json
+import time
+from contextlib import closing, redirect_stderr, redirect_stdout, suppress
+from pathlib import Path
+from typing import TextIO
 
 import pytest
+from rich.console import Console
 from timing import until
 
 from deixis.cli import progress
+from deixis.cli.app import main
 from deixis.cli.progress import progress_bar, stage_bar, step_bar, time_bar
+from deixis.cli.robot.tour import Tour
 
 
 class Terminal(io.StringIO):
@@ -72,3 +79,79 @@ def test_a_pipe_shows_no_bar() -> None:
     with redirect_stderr(stream), progress_bar("reading") as report:
         assert report is None
     assert stream.getvalue() == ""
+
+
+def test_a_bar_that_appears_late_shows_the_count_and_time_so_far(
+    shown: Terminal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(progress, "PATIENCE", 1.1)
+    with redirect_stderr(shown), progress_bar("reading") as report:
+        assert report is not None
+        report(3, 7)
+        assert until(lambda: "3/7" in shown.getvalue())
+    assert "0:00:01" in shown.getvalue()
+
+
+def test_an_endless_limit_shows_the_seconds_alone(shown: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    monkeypatch.setattr(progress, "SECONDS_SHOWN", 0.05)
+    with redirect_stderr(shown), time_bar("grounding", float("inf")):
+        assert until(lambda: "grounding, seconds" in shown.getvalue())
+    assert "0/?" in shown.getvalue()
+
+
+def test_no_bar_disturbs_a_user_who_types_the_input(shown: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    monkeypatch.setattr("sys.stdin", Terminal())
+    with redirect_stderr(shown), time_bar("reading", 10.0, source="-"):
+        time.sleep(0.1)
+    assert shown.getvalue() == ""
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("ground", "two.layout", "two.scene.json"),
+        ("infer", "two.layout"),
+        ("imagine", "two.layout"),
+        ("lint", "two.layout"),
+        ("tell", "two.layout"),
+        ("reason", "two.ttl"),
+        ("validate", "two.ttl"),
+        ("refer", "the fork", "two.scene.json"),
+    ],
+    ids=lambda command: command[0],
+)
+def test_commands_that_may_take_long_have_a_bar(
+    command: tuple[str, ...], shown: Terminal, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "two.layout").write_text("fork left of plate\n")
+    boxes = [
+        {"id": "o1", "min": [0, 0], "max": [0.02, 0.2], "label": "fork"},
+        {"id": "o2", "min": [1, 0], "max": [2, 1]},
+    ]
+    (tmp_path / "two.scene.json").write_text(json.dumps({"objects": boxes}))
+    (tmp_path / "two.ttl").write_text("<urn:a> a <urn:b> .\n")
+    bars: list[str] = []
+    made = progress._LateBar.__init__
+
+    def noted(bar: progress._LateBar, what: str, stream: TextIO) -> None:
+        bars.append(what)
+        made(bar, what, stream)
+
+    monkeypatch.setattr(progress._LateBar, "__init__", noted)
+    monkeypatch.setattr("sys.argv", ["deixis", *command])
+    with redirect_stderr(shown), redirect_stdout(io.StringIO()), suppress(SystemExit):
+        main()
+    assert bars
+
+
+def test_a_chapter_of_the_demo_shows_its_number(
+    shown: Terminal, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(progress, "PATIENCE", 0.05)
+    with redirect_stderr(shown), closing(Tour(Console(file=io.StringIO()), tmp_path, 12)) as tour:
+        tour.chapter("One")
+        tour.chapter("Two")
+        assert until(lambda: "1/12" in shown.getvalue())

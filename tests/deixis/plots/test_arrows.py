@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import PerceivedObject
-from deixis.plots.arrows import Ends, Point, draw_arrows, points_along
+from deixis.plots.arrows import DIRECTIONS, Ends, Point, directions, draw_arrows, points_along
+from deixis.plots.grounding import scene_figure
 
 PLATE = PerceivedObject("plate", (0.0, 0.0), (10.0, 10.0))
 
@@ -79,3 +81,13 @@ def test_points_along_an_arrow_lie_where_it_is_drawn() -> None:
     assert start == pytest.approx(arrow[0]) and points[[0, -1]] == pytest.approx(np.array(arrow))
     middle = (np.array(arrow[0]) + 2 * control + np.array(arrow[1])) / 4  # of a quadratic Bezier curve
     assert np.linalg.norm(points - middle, axis=1).min() < 0.01
+
+
+def test_the_direction_of_a_thing_is_drawn_and_explained() -> None:
+    knife = {"id": "o1", "label": "knife", "min": [0.0, 0.0], "max": [0.03, 0.2]}
+    known = knife | {"heading": {"part": "head", "direction": [0, 1], "probability": 0.98}}
+    ((start, end),) = directions(read_scene({"objects": [known]}))
+    assert start == pytest.approx((0.015, 0.135)) and end == pytest.approx((0.015, 0.195))
+    for thing, is_explained in ((known, True), (knife, False)):
+        (axes,) = scene_figure(read_scene({"objects": [thing]})).axes
+        assert (DIRECTIONS in axes.get_xlabel()) is is_explained

@@ -101,3 +101,13 @@ def test_what_the_axes_mean_is_that_of_the_scene(
 ) -> None:
     axes = picture("cup left of plate", unit, viewpoint, frame).axes[0]
     assert (axes.get_xlabel(), axes.get_ylabel()) == (across, along)
+
+
+def test_an_unnamed_thing_has_the_id_that_a_label_refers_to() -> None:
+    scene = Scene((PerceivedObject("a", (0, 0), (1, 1), "cup"), PerceivedObject("b", (2, 0), (3, 1), "cup")))
+    found = ground(parse_script("cup is a cup"), scene)
+    (axes,) = grounding_figure(found, scene).axes
+    named, other = sorted((text.get_text() for text in axes.texts), key=len, reverse=True)
+    (match,) = found.matches.values()
+    assert f"or at {match.alternatives[0].perceived}" in named
+    assert other == f"cup ({match.alternatives[0].perceived})"

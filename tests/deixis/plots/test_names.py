@@ -72,3 +72,14 @@ def test_a_name_beside_another_thing_has_a_line_to_its_own() -> None:
     own, other = Box(0, 0, 10, 100), np.array([[30.0, 0.0, 90.0, 40.0]])
     assert _seems_another(Box(20, 45, 80, 55), own, other)
     assert not _seems_another(Box(12, 60, 40, 70), own, other)
+
+
+def test_a_word_covers_neither_end_of_a_short_arrow() -> None:
+    figure, axes = new_figure(9.0, 7.0)
+    axes.set_xlim(0, 10)
+    axes.set_ylim(0, 10)
+    arrow = ((5.0, 5.0), (5.2, 4.8))
+    write_names(figure, axes, [], words=[("above", arrow)])
+    (word,) = axes.texts
+    extent = word.get_window_extent()
+    assert not any(extent.contains(*axes.transData.transform(end)) for end in arrow)

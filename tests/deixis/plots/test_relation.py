@@ -38,7 +38,10 @@ def test_a_learned_meaning_is_marked_and_the_shipped_one_too() -> None:
     learned = replace(models["horizontal"], provenance=Provenance(examples=2.0, made=datetime(2026, 1, 1, tzinfo=UTC)))
     pictures = [relation_figure(RELATIONS["left"], one, 9) for one in (models, models.replaced(learned))]
     titles = [picture.axes[0].get_title(loc="left") for picture in pictures]
-    assert titles == ["How well 'left of' holds, as shipped", "How well 'left of' holds, learned from 2 facts"]
+    assert titles == [
+        "Degree to which 'left of' holds (shipped model)",
+        "Degree to which 'left of' holds (learned from 2 facts)",
+    ]
 
 
 def test_the_scale_is_as_high_as_the_field() -> None:

@@ -127,4 +127,4 @@ def test_a_picture_of_recognised_things_explains_its_numbers(tmp_path: Path, mon
     things = (PerceivedObject("o1", (0, 0, 0), (1, 1, 1)),)
     plot_seen.plot_recognised(Recognised(Scene(things), {"o1": answer}), tmp_path / "seen.png")
     assert [text.get_text() for text in drawn[0].axes[0].texts] == ["o1 unknown 0.39"]
-    assert "of 'unknown', that no name known is" in drawn[0].axes[0].get_xlabel()
+    assert "For 'unknown', it is the probability that none" in drawn[0].axes[0].get_xlabel()

@@ -97,7 +97,7 @@ def test_object_is_merged_with_a_thing_that_fits(robot: Robot) -> None:
     assert known[ball.id, SAME_AS] is known[seen.thing, "isA"] is Origin.INFERRED
     assert known[seen.thing, "at"] is Origin.SEEN
     assert robot.diary.board.now(Pattern(ball.id, EXPECTED)) == ()
-    assert answer(robot, "is there a red ball?", 14.0).startswith("Yes: the ball is there")
+    assert answer(robot, "is there a red ball?", 14.0).startswith("Yes: the ball has been there since")
 
 
 def test_thing_elsewhere_is_not_the_object(robot: Robot) -> None:
@@ -261,7 +261,7 @@ def test_live_robot_expects_sees_and_gives_up(tmp_path: Path) -> None:
         told = [str(each.statement.object) for each in board.holding(Pattern("learner", "says"))]
     assert [line for line in lines if "failed" in line] == []
     assert told[:2] == ["I do not see it yet; I expect: ball.", "I do not see it yet; I expect: spoon."]
-    assert "There is a red ball on the left; the ball was not seen yet" in told[2]
+    assert "There is a red ball on the left; the ball has not been seen yet" in told[2]
     assert told[3].startswith("I see the ball that anna spoke of: it is o4, probability 0.9")
     assert told[4].startswith("I do not see the spoon that anna spoke of: its place was in view and empty")
 

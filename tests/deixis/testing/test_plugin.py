@@ -85,3 +85,22 @@ def test_expectations_have_the_lines_of_the_file() -> None:
 def test_lines_that_are_no_expectation_are_refused(block: str, message: str) -> None:
     with pytest.raises(DeixisError, match=message):
         list(expectations_in(block, "dinner.layout"))
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('assert_follows("fork left of plate", "left(frok, plate)")', "*no object 'frok'; did you mean 'fork'?"),
+        ('assert_follows("fork left of plate", "left(fork plate)")', "*expected a comma and a second name*"),
+        ('assert_grounds("fork left of plate", "table.scene.json", {"fork": 9})', "*'9', which is not in the scene*"),
+        ('deixis_script("none.layout")', "*none.layout: there is no such file"),
+    ],
+)
+def test_bad_input_is_reported_at_the_line_of_the_test(pytester: pytest.Pytester, line: str, message: str) -> None:
+    (pytester.path / "table.scene.json").write_text(SCENE)
+    pytester.makepyfile(f"from deixis.testing import *\ndef test_dinner(deixis_script):\n    {line}\n")
+    result = pytester.runpytest_inprocess(*OPTIONS)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines([message])
+    result.stdout.no_fnmatch_line("*src/deixis*")
+    result.stdout.no_fnmatch_line("*workflows*")

@@ -29,7 +29,7 @@ def test_notes_on_the_same_words_are_in_the_order_of_the_facts() -> None:
     assert reading is not None
     hints = [problem.hint for problem in reading.sentences[0].problems]
     assert hints == [
-        "write 'There are 2: the jug 1 and the jug 2.'",
+        "write 'There are 2 jugs: the jug 1 and the jug 2.'",
         "write 'The jug 1 is on the brush.'",
         "write 'The jug 2 is on the brush.'",
         "write 'The jug 1 is on the towels.'",

@@ -144,3 +144,17 @@ def test_a_format_is_recognised_by_its_content() -> None:
     assert reader({"shapes": [], "imageHeight": 3}) == "labelme_scene"
     others: list[Any] = [{"shapes": []}, {"images": []}, {"objects": [], **COCO}, [], None, 3]
     assert [reader(other) for other in others] == [None] * len(others)
+
+
+def test_a_scene_is_written_as_coco_and_read_back() -> None:
+    low, high = [[0.0, 0.0], [10.5, 30.0]], [[5.0, 20.0], [40.0, 60.0]]
+    scene = Scene.from_boxes(low, high, labels=["cup", None], confidences=[0.75, 1.0], unit="px", frame="image")
+    written = scene.to_coco(file_name="table.jpg")
+    assert written["images"] == [{"id": 1, "width": 40, "height": 60, "file_name": "table.jpg"}]
+    read = Scene.from_coco(json.loads(json.dumps(written)), "table.jpg")
+    assert read.objects == scene.objects
+
+
+def test_a_scene_in_metres_is_not_written_as_coco() -> None:
+    with pytest.raises(SceneError, match="COCO boxes must be in pixels"):
+        Scene.from_boxes([[0.0, 0.0]], [[1.0, 1.0]]).to_coco()

@@ -167,9 +167,9 @@ def test_a_derivation_prints_with_source_locations(graph_of: MakeGraph) -> None:
     assert list(derivation.lines()) == [
         "left(a, c)   by transitivity",
         "    left(a, b)   by sub-property",
-        "        top_left(a, b)   by stated   [test.layout:1:1]",
+        "        top_left(a, b)   stated   [test.layout:1:1]",
         "    left(b, c)   by inverse",
-        "        right(c, b)   by stated   [test.layout:2:1]",
+        "        right(c, b)   stated   [test.layout:2:1]",
     ]
 
 

@@ -99,9 +99,9 @@ def test_an_object_shares_the_relations_of_its_support(graph_of: MakeGraph) -> N
     assert derivation is not None
     assert list(derivation.lines()) == [
         "left(fork, napkin)   by composition",
-        "    left(fork, plate)   by stated   [test.layout:2:1]",
+        "    left(fork, plate)   stated   [test.layout:2:1]",
         "    under(plate, napkin)   by inverse",
-        "        on(napkin, plate)   by stated   [test.layout:1:1]",
+        "        on(napkin, plate)   stated   [test.layout:1:1]",
     ]
 
 
@@ -121,9 +121,9 @@ def test_a_choice_with_one_possible_case_is_decided(graph_of: MakeGraph) -> None
     assert derivation is not None
     assert [line.strip() for line in derivation.lines()] == [
         "top(a, b)   by cases",
-        "left or top(a, b)   by stated   [test.layout:1:1]",
+        "left or top(a, b)   stated   [test.layout:1:1]",
         "impossible: left(a, b)   by contradiction",
-        "not left(a, b)   by stated   [test.layout:2:1]",
+        "not left(a, b)   stated   [test.layout:2:1]",
         "left(a, b)   by assumed",
         "top(a, b)   by assumed",
     ]

@@ -152,14 +152,14 @@ def test_the_only_possible_choice_is_taken_and_explained() -> None:
         "b.start > 5   by shortest path\n"
         "    a.finish < b.start   by definition\n"
         "        before(a, b)   by elimination\n"
-        "            before or after(a, b)   by stated   [t.json: r]\n"
+        "            before or after(a, b)   stated   [t.json: r]\n"
         "            a.start < a.start - 1   by negative cycle\n"
         "                b.finish < a.start   by definition\n"
         "                    after(a, b)   by case\n"
         "                b.start < b.finish   by proper interval\n"
-        "                b.start >= 2   by stated   [t.json: b.start]\n"
-        "                a.start <= 1   by stated   [t.json: a.start]\n"
-        "    a.finish >= 5   by stated   [t.json: a.finish]"
+        "                b.start >= 2   stated   [t.json: b.start]\n"
+        "                a.start <= 1   stated   [t.json: a.start]\n"
+        "    a.finish >= 5   stated   [t.json: a.finish]"
     )
 
 

@@ -21,6 +21,7 @@ from deixis.cli.common import (
 )
 from deixis.cli.descriptions.relation import Models, read_models
 from deixis.cli.output import note_change
+from deixis.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -79,10 +80,12 @@ def learn_relation(
             return
         examples = _examples(files or [])
         if out is None:
-            learned, where = session.learn_relations(examples, strength), session.path
+            with progress_bar("fitting the models"):
+                learned, where = session.learn_relations(examples, strength), session.path
             note_change(where)
         else:
-            learned, where = _fitted(session, examples, strength, models, no_memory), out
+            with progress_bar("fitting the models"):
+                learned, where = _fitted(session, examples, strength, models, no_memory), out
             _write(learned, out)
     if as_json:
         print_json(learned_words_to_dict(learned, str(where)))
@@ -103,7 +106,8 @@ def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_j
         raise DeixisError("--descriptions needs a file for the weights; name it with -o FILE.json")
     require_ending(out, (".json",), "a file of weights")
     require_writable([out], [descriptions])
-    learned = learn_reference(read_text(descriptions).splitlines(), descriptions.parent, strength)
+    with progress_bar("fitting the weights"):
+        learned = learn_reference(read_text(descriptions).splitlines(), descriptions.parent, strength)
     write_reference(learned.model, out, f"Learned from {learned.descriptions} descriptions in {descriptions.name}")
     if as_json:
         print_json(learned_reference_to_dict(learned, str(out)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,6 +22,7 @@ from deixis.cli.common import (
     print_lines,
 )
 from deixis.cli.output import StandardInput
+from deixis.cli.progress import progress_bar
 from deixis.printable import visible_line
 
 MAX_LINE = 100_000
@@ -110,7 +112,8 @@ def refer(
         return
     known = _attributes(attributes, memory)
     answer = _terminal(out) if ask else None
-    found = find(text, seen, ask=answer, oracle=oracle, until=until, model=_model(models), attributes=known)
+    with nullcontext() if ask else progress_bar("finding the object"):
+        found = find(text, seen, ask=answer, oracle=oracle, until=until, model=_model(models), attributes=known)
     if as_json:
         print_json(reference_to_dict(found))
     else:
@@ -157,11 +160,16 @@ def _answer_lines(file: str, until: float, model: Model | None) -> None:
     from deixis.workflows.descriptions.refer import refer_batch
 
     if file == "-":
-        lines, folder = StandardInput(undecoded="surrogateescape").lines(MAX_LINE), Path()
+        lines, folder, total = StandardInput(undecoded="surrogateescape").lines(MAX_LINE), Path(), None
     else:
-        lines, folder = read_lines(file, undecoded="surrogateescape"), Path(file).parent
-    for answer in refer_batch(lines, folder, until, model):
-        print_line(json.dumps(answer, ensure_ascii=False))
+        read = list(read_lines(file, undecoded="surrogateescape"))
+        lines, folder, total = iter(read), Path(file).parent, len(read)
+    is_printed = sys.stdout is None or sys.stdout.isatty()  # then the answers show the progress
+    with nullcontext() if is_printed else progress_bar("answering") as progress:
+        for done, answer in enumerate(refer_batch(lines, folder, until, model), start=1):
+            print_line(json.dumps(answer, ensure_ascii=False))
+            if progress is not None:
+                progress(done, total)
 
 
 def _terminal(out: object) -> Answerer:

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import NO, AsJson, HideLabels, Image, TimeLimit, note_unit, print_json, print_lines
+from deixis.cli.progress import time_bar
 
 
 def tell(
@@ -32,7 +33,8 @@ def tell(
     given = source if holds_facts(source) else load_scene(source, hide_labels, image)
     if not isinstance(given, str):
         note_unit(given)
-    telling = run(given, all_facts=all_facts, time_limit=time_limit)
+    with time_bar("describing", time_limit, source=source):
+        telling = run(given, all_facts=all_facts, time_limit=time_limit)
     if as_json:
         print_json(telling.to_dict())
     else:

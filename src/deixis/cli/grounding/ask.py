@@ -59,7 +59,7 @@ def _asked(word: str, scene: str, points_at: str | None, teacher: str, memory: P
         name = answer["category"] = session.category_meant(name_given)
         print_lines(meant_lines(name_given, name))
         if name in session.categories() and points_at is None:
-            with progress_bar("reading the taught views") as progress:
+            with progress_bar("comparing with the taught views") as progress:
                 recognised = session.recognise(seen.without_labels(), progress, print_note).answers
             ones = {id: each.probability for id, each in recognised.items() if each.label == name}
             listed = ", ".join(f"{id} ({probability:.2f})" for id, probability in ones.items())

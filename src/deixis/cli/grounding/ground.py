@@ -25,9 +25,9 @@ from deixis.cli.common import (
     print_written,
     require_plot,
     tell_of_compiling,
-    working,
 )
 from deixis.cli.output import StandardInput
+from deixis.cli.progress import time_bar
 from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def ground(
         attributes=attributes,
         deadline=deadline,
     )
-    found = answer(request, working)
+    found = answer(request, lambda stage: time_bar(stage, time_limit))
     if found.exchanges is not None:
         print(file=out)
     if plot is not None:

@@ -23,6 +23,7 @@ from deixis.cli.common import (
     print_or_write,
     require_ending,
 )
+from deixis.cli.progress import progress_bar, time_bar
 
 if TYPE_CHECKING:
     from deixis.memory.episodes.blackboard import Blackboard
@@ -301,7 +302,8 @@ def check(
 
     with _board(memory) as board:
         fluents = board.holding(_pattern(*pattern), *(window or (None, None)))
-    found = check_consistency(fluents, default_ontology(), time_limit, logical=ontology)
+    with time_bar("checking", time_limit):
+        found = check_consistency(fluents, default_ontology(), time_limit, logical=ontology)
     conflicts = {"time": found.temporal, "space": found.spatial, "ontology": found.logical}
     undecided = found.consistent and bool(found.undecided)
     consistent = None if undecided else found.consistent
@@ -363,7 +365,11 @@ def consolidate(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     from deixis.session import Session
     from deixis.workflows.knowledge.episodes import consolidate as run
 
-    with _board(memory) as board, Session(memory or default_memory()) as session:
+    with (
+        _board(memory) as board,
+        Session(memory or default_memory()) as session,
+        progress_bar("learning from the experiences"),
+    ):
         done = run(board, session)
     if as_json:
         print_json({"lessons": done.lessons, "left_out": done.left_out})

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import AsJson, TimeLimit, print_json, print_lines
+from deixis.cli.progress import time_bar
 
 
 def habits(
@@ -19,7 +20,8 @@ def habits(
     from deixis.report.knowledge.habits import habits_lines, habits_to_dict
     from deixis.workflows.knowledge.habits import habits as run
 
-    found = run(file, things or [], time_limit=time_limit)
+    with time_bar("finding the rules", time_limit, source=file):
+        found = run(file, things or [], time_limit=time_limit)
     if as_json:
         print_json(habits_to_dict(found))
     else:

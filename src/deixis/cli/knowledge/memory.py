@@ -135,10 +135,13 @@ def import_(
         _print_imported(dump, where, "views", as_json, learn_again=done.relearn)
     elif has_ending(dump):
         where = memory or default_memory()
-        _print_imported(dump, where, "episodes", as_json, fluents=import_file(where, dump))
+        with progress_bar("importing"):
+            fluents = import_file(where, dump)
+        _print_imported(dump, where, "episodes", as_json, fluents=fluents)
     elif dump.suffix.lower() in FORMATS:
         with Session(memory) as session:
-            session.import_(dump)
+            with progress_bar("importing"):
+                session.import_(dump)
             _print_imported(dump, session.path, "concepts", as_json)
     elif dump.suffix.lower() == ".zip":
         raise DeixisError(f"{dump}: this is not an archive of views; 'deixis memory export --format views' writes one")

@@ -17,6 +17,7 @@ from deixis.cli.common import (
     print_lines,
     print_note,
 )
+from deixis.cli.progress import time_bar
 from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT
 
 
@@ -50,7 +51,9 @@ def query(
     if (sparql is None) == (file is None):
         raise DeixisError("query: give either a query or a file with -f")
     with Session(memory) as session:
-        result = session.query(read_text(file) if file is not None else sparql or "", time_limit, memory_limit * 2**20)
+        text = read_text(file) if file is not None else sparql or ""
+        with time_bar("querying", time_limit):
+            result = session.query(text, time_limit, memory_limit * 2**20)
         if as_json or format is TableFormat.JSON:
             sys.stdout.writelines(result.json_parts())
             sys.stdout.write("\n")

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import NO, AsJson, MemoryDir, print_json, print_line, print_lines
+from deixis.cli.progress import progress_bar
 
 
 def recall(
@@ -25,7 +26,7 @@ def recall(
     from deixis.workflows.knowledge.recall import moment_of
 
     asked = None if at is None else moment_of(at)
-    with Session(memory) as session:
+    with Session(memory) as session, progress_bar("reading the episodes"):
         found = session.recall(question, asked, speaker)
     if as_json:
         print_json(recall_to_dict(found))

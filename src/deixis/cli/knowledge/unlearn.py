@@ -9,6 +9,7 @@ import typer
 from deixis.cli.common import NO, AsJson, MemoryDir, print_json, print_lines, require_memory
 from deixis.cli.completion import complete_categories, complete_lessons
 from deixis.cli.output import note_change
+from deixis.cli.progress import progress_bar
 
 
 def unlearn(
@@ -43,7 +44,8 @@ def unlearn(
     if not has_episodes(memory or default_memory()):
         require_memory(memory)
     with Session(memory) as session:
-        found = session.unlearn(selection, dry_run)
+        with progress_bar("taking back what was taught"):
+            found = session.unlearn(selection, dry_run)
         if found and not dry_run:
             note_change(session.path)
     if as_json:

@@ -18,6 +18,7 @@ from deixis.cli.common import (
     require_scene_name,
     tell_of_compiling,
 )
+from deixis.cli.progress import time_bar
 
 if TYPE_CHECKING:
     from deixis.workflows.layouts.imagine import Imagination
@@ -47,7 +48,8 @@ def imagine(
     _require_writable(script, scenes, pictures)
     parsed = read_script_file(script, deadline=Deadline.after(time_limit))
     tell_of_compiling()
-    found = run(parsed, any_size=any_size, seed=seed, count=count, time_limit=time_limit)
+    with time_bar("laying the table" if count == 1 else f"laying {count} tables", count * time_limit):
+        found = run(parsed, any_size=any_size, seed=seed, count=count, time_limit=time_limit)
     _write(found, scenes, pictures)
     if as_json:
         print_json(imagination_to_dict(found))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from deixis.cli.common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_line, print_lines
+from deixis.cli.progress import time_bar
 
 if TYPE_CHECKING:
     from deixis.ontology.graph.facts import Fact
@@ -44,7 +45,8 @@ def infer(
         raise typer.Exit(_verdict(script, time_limit, as_json))
     text, option = (explain, "--explain") if explain is not None else (why_not, "--why-not")
     fact = None if text is None else replace(plain_fact(text, option), source=None)
-    inference = run(script, time_limit)
+    with time_bar("inferring", time_limit, source=script):
+        inference = run(script, time_limit)
     if fact is not None and inference.consistent and inference.decided:
         (_explain if explain is not None else _why_not)(inference, fact, as_json)
         return
@@ -65,7 +67,8 @@ def infer(
 def _verdict(script: str, time_limit: float, as_json: bool) -> int:
     from deixis.workflows.layouts.infer import verdict_of
 
-    found = verdict_of(script, time_limit)
+    with time_bar("inferring", time_limit, source=script):
+        found = verdict_of(script, time_limit)
     if as_json:
         print_json({"consistent": found})
     else:

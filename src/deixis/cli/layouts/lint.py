@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_lines
+from deixis.cli.progress import time_bar
 
 
 def lint(
@@ -21,7 +22,8 @@ def lint(
     from deixis.workflows.layouts.lint import lint as run
 
     chosen, left_out = ([code.strip() for code in codes.split(",") if code.strip()] for codes in (select, ignore))
-    found = run(script, select=chosen, ignore=left_out, time_limit=time_limit)
+    with time_bar("checking the script", time_limit, source=script):
+        found = run(script, select=chosen, ignore=left_out, time_limit=time_limit)
     if as_json:
         print_json(lint_to_dict(found))
     else:

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import AsJson, TimeLimit, deadline_of, print_json, print_lines
+from deixis.cli.progress import time_bar
 
 
 class ReadFormat(StrEnum):
@@ -30,7 +31,8 @@ def read(
     from deixis.report.layouts.read import reading_lines, reading_to_dict
     from deixis.workflows.layouts.read import read_english_file
 
-    script = read_english_file(text, deadline_of(time_limit), strict)
+    with time_bar("reading", time_limit, source=text):
+        script = read_english_file(text, deadline_of(time_limit), strict)
     if as_json or format is ReadFormat.JSON:
         print_json(reading_to_dict(script))
     elif format is ReadFormat.LAYOUT:

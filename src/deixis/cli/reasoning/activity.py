@@ -10,6 +10,7 @@ import typer
 
 from deixis.answers import count
 from deixis.cli.common import NO, AsJson, MemoryDir, TimeLimit, print_json, print_line, print_lines
+from deixis.cli.progress import time_bar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,7 +46,9 @@ def ground(
     from deixis.report.reasoning.activities import grounded_lines, grounded_to_dict
     from deixis.workflows.reasoning.activities import ground as run
 
-    found = run(activity, _sequence(file, memory, experience), time_limit)
+    sequence = _sequence(file, memory, experience)
+    with time_bar("grounding", time_limit):
+        found = run(activity, sequence, time_limit)
     if as_json:
         print_json(grounded_to_dict(found))
     else:
@@ -83,7 +86,7 @@ def learn(
         print_json({"activity": name, "examples": activity.examples, "steps": names, "known": str(known)})
         return
     steps = count(len(activity.steps), "step")
-    print_line(f"Learned '{name}' from {count(activity.examples, 'example')}: {steps}; in {known}")
+    print_line(f"Learned '{name}' from {count(activity.examples, 'example')}: {steps}; stored in {known}")
 
 
 @activity_app.command("recognise")
@@ -99,7 +102,9 @@ def recognise(
     from deixis.report.reasoning.activities import recognised_lines, recognised_to_dict
     from deixis.workflows.reasoning.activities import recognise as run
 
-    found = run(_sequence(file, memory, experience), known, time_limit)
+    sequence = _sequence(file, memory, experience)
+    with time_bar("comparing", time_limit):
+        found = run(sequence, known, time_limit)
     if as_json:
         print_json(recognised_to_dict(found))
     else:

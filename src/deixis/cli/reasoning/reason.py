@@ -21,6 +21,7 @@ from deixis.cli.common import (
     print_lines,
     print_note,
 )
+from deixis.cli.progress import time_bar
 from deixis.deadline import Deadline
 
 if TYPE_CHECKING:
@@ -110,12 +111,15 @@ def _entail(
     from deixis.report.reasoning import reason as report
 
     deadline, ntriples, words = Deadline.after(time_limit), write_ntriples(stated), Words(labels_of(stated))
-    found = entail(ntriples, engine.value, time_limit)
+    with time_bar("reasoning", time_limit):
+        found = entail(ntriples, engine.value, time_limit)
     if not (turtle or as_json):
         print_line(report.verdict(found, words))
         sys.stdout.flush()
     if not (verdict or found.possible):
-        found = explained(ntriples, found, max(deadline, Deadline.after(LAST_SHARE * time_limit)), every)
+        last = max(deadline, Deadline.after(LAST_SHARE * time_limit))
+        with time_bar("finding the reasons", last.left):
+            found = explained(ntriples, found, last, every)
     if turtle:
         _print_turtle(*found.inconsistency, *found.impossible)
     elif as_json:

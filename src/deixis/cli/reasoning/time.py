@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from deixis.cli.common import NO, UNDECIDED, AsJson, TimeLimit, print_json, print_lines
+from deixis.cli.progress import progress_bar, time_bar
 
 if TYPE_CHECKING:
     from deixis.reasoning.constraints.proof import Proof
@@ -54,10 +55,14 @@ def time_command(
         raise DeixisError("time: --pattern excludes --relate and --explain")
     content = read_fluents(fluents)
     try:
-        timeline = Timeline()
-        for item in (*content.fluents, *content.relations):
-            timeline.add(item, time_limit)
-        chronology = timeline.chronology(time_limit)
+        timeline, items = Timeline(), (*content.fluents, *content.relations)
+        with progress_bar("adding the statements") as progress:
+            for number, item in enumerate(items):
+                if progress is not None:
+                    progress(number, len(items))
+                timeline.add(item, time_limit)
+        with time_bar("inferring", time_limit):
+            chronology = timeline.chronology(time_limit)
     except TemporalConflictError as conflict:
         _print_conflict(conflict, as_json)
         raise typer.Exit(NO) from conflict

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import NO, UNDECIDED, AsJson, MemoryDir, TimeLimit, print_json, print_line
+from deixis.cli.progress import time_bar
 from deixis.report.marks import violation
 
 
@@ -38,11 +39,12 @@ def validate(
         raise DeixisError("validate: give files or --memory, not both")
     try:
         if files:
-            report = validate_files(files, shapes or (), time_limit)
+            with time_bar("checking the shapes", time_limit):
+                report = validate_files(files, shapes or (), time_limit)
         else:
             from deixis.session import Session
 
-            with Session(memory) as session:
+            with Session(memory) as session, time_bar("checking the shapes", time_limit):
                 report = validate_memory(session.memory(), shapes or (), time_limit)
     except LimitError as error:
         print(f"deixis: {error}", file=sys.stderr)

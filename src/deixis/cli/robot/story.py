@@ -6,6 +6,7 @@ import math
 import re
 import sys
 import tempfile
+from contextlib import closing
 from pathlib import Path
 
 from deixis.cli.output import terminal
@@ -34,6 +35,9 @@ QUERY = """SELECT ?object ?kind ?lesson WHERE {
   ?category rdfs:label ?object ; rdfs:subClassOf dx:Cutlery .
 } ORDER BY ?object"""
 
+CHAPTERS = 12
+"""Number of chapters of the tour."""
+
 MORE_TABLES = (8, 9)
 """Seeds of the further tables from which views of things are learned."""
 
@@ -44,7 +48,11 @@ def tell(out: Path) -> None:
 
     require_picture(out / "script1.png")
     require("open3d", "simulating a depth camera")
-    tour = Tour(Console(file=terminal(sys.stdout), highlight=False, soft_wrap=True), out)
+    with closing(Tour(Console(file=terminal(sys.stdout), highlight=False, soft_wrap=True), out, CHAPTERS)) as tour:
+        _tell(tour, out)
+
+
+def _tell(tour: Tour, out: Path) -> None:
     script1, scene = read_script(example("script1.layout")), read_scene(example("place_setting.scene.json"))
 
     tour.chapter("A person describes a laid table", "deixis parse examples/script1.layout")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from deixis.cli.progress import progress_bar
 from deixis.examples_data import EXAMPLES
 
 if TYPE_CHECKING:
@@ -30,9 +32,13 @@ class Tour:
         The console that the parts are printed on.
     out
         The folder of the pictures and the page.
+    chapters
+        Number of chapters, for the progress bar that a chapter shows while it prints nothing.
     """
 
-    def __init__(self, console: Console, out: Path) -> None:
+    def __init__(self, console: Console, out: Path, chapters: int) -> None:
+        self._total = chapters
+        self._waiting = ExitStack()
         self._console = console
         self._out = out
         self._chapters = 0
@@ -42,30 +48,47 @@ class Tour:
         """Begin a chapter; the page also shows the commands that do the same from a checkout."""
         self._chapters += 1
         heading = f"{self._chapters}. {title}"
-        self._console.print(f"\n[bold]{heading}[/bold]")
+        with self._printing():
+            self._console.print(f"\n[bold]{heading}[/bold]")
         self._body.append(f"<h2>{escape(heading)}</h2>")
         if commands:
             self._body.append(f'<pre class="command">{escape(chr(10).join(commands))}</pre>')
 
+    @contextmanager
+    def _printing(self) -> Iterator[None]:
+        """Remove the progress bar while something is printed, and show it again if the next lines take long."""
+        self._waiting.close()
+        yield
+        progress = self._waiting.enter_context(progress_bar("chapters"))
+        if progress is not None:
+            progress(self._chapters - 1, self._total)
+
+    def close(self) -> None:
+        """Remove the progress bar."""
+        self._waiting.close()
+
     def say(self, *lines: str) -> None:
         """Print sentences."""
-        for line in lines:
-            self._console.print(f"   {line}", markup=False)
+        with self._printing():
+            for line in lines:
+                self._console.print(f"   {line}", markup=False)
         self._body.append(f"<p>{escape(' '.join(lines))}</p>")
 
     def listing(self, lines: Iterable[str]) -> None:
         """Print lines of a file or of an answer; the names of shipped examples are relative to the checkout."""
         shown = [line.replace(f"{EXAMPLES}/", "examples/") for line in lines]
-        for line in shown:
-            if "[" in line:
-                self._console.print(f"   │ {line}", markup=False)
-            else:
-                self._console.print(f"   [dim]│[/dim] {line}")
+        with self._printing():
+            for line in shown:
+                if "[" in line:
+                    self._console.print(f"   │ {line}", markup=False)
+                else:
+                    self._console.print(f"   [dim]│[/dim] {line}")
         self._body.append(f"<pre>{escape(chr(10).join(shown))}</pre>")
 
     def picture(self, name: str, what: str) -> None:
         """Print where a picture is; ``what`` describes it for readers who cannot see it."""
-        self._console.print(f"   Picture: {relative(self._out / name)}", markup=False)
+        with self._printing():
+            self._console.print(f"   Picture: {relative(self._out / name)}", markup=False)
         self._body.append(f'<p><img src="{escape(name)}" alt="{escape(what)}"></p>')
 
     def write_page(self) -> None:
@@ -76,6 +99,7 @@ class Tour:
         page = f'<!DOCTYPE html>\n<html lang="en">\n<head>{head}</head>\n{body}\n</html>\n'
         file = self._out / PAGE
         file.write_text(page, encoding="utf-8")
+        self._waiting.close()
         self._console.print(f"\nAll of this on one page: {relative(file)}", markup=False)
 
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import NO, UNDECIDED, AsJson, SceneFile, print_json, print_lines
+from deixis.cli.progress import progress_bar
 
 
 def point(
@@ -30,7 +31,8 @@ def point(
     from deixis.report.scenes.point import shown_lines, shown_to_dict
     from deixis.workflows.scenes.point import point as run
 
-    found = run(skeleton, scene, said or (), sure=sure)
+    with progress_bar("finding the gestures"):
+        found = run(skeleton, scene, said or (), sure=sure)
     if memory is not None:
         from deixis.memory.episodes.blackboard import Blackboard
         from deixis.workflows.scenes.remembered_showing import remember_showing

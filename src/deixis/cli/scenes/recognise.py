@@ -46,7 +46,7 @@ def recognise(
     require_memory(memory)
     seen = load_scene(scene)
     require_writable([out, plot], _cloud_files(seen))
-    with Session(memory) as session, progress_bar("reading the taught views") as progress:
+    with Session(memory) as session, progress_bar("comparing with the taught views") as progress:
         found = session.recognise(seen, progress, print_note)
     if out is not None:
         from deixis.workflows.scenes.perceive import write_scene

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -23,7 +22,6 @@ from deixis.cli.progress import stage_bar
 if TYPE_CHECKING:
     from deixis.perception.clouds.mesh import Mesh
     from deixis.workflows.layouts.lay_table import LaidScript
-    from deixis.workflows.scenes.simulate import CameraSetup, Simulation
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
@@ -64,6 +62,7 @@ def simulate(
     from deixis.perception.clouds.depth import read_intrinsics
     from deixis.perception.simulator.cameras.camera import KINECT
     from deixis.perception.simulator.cameras.depth import DepthSensor, in_table_frame
+    from deixis.report.scenes.simulate import simulation_lines, simulation_to_dict
     from deixis.workflows.layouts.lay_table import NoTableError
     from deixis.workflows.scenes.simulate import CameraSetup
     from deixis.workflows.scenes.simulate import simulate as run
@@ -93,9 +92,9 @@ def simulate(
 
         write_scene(found.truth, truth)
     if as_json:
-        print_json(simulation_to_dict(found, view, seed))
+        print_json(simulation_to_dict(found))
     else:
-        print_lines(_lines(found))
+        print_lines(simulation_lines(found))
         print_written(out, truth)
 
 
@@ -130,58 +129,3 @@ def _meshes(given: list[str], unit: str) -> dict[str, Mesh]:
         read = read_mesh(file)
         meshes[name] = replace(read, vertices=read.vertices * UNITS[unit])
     return meshes
-
-
-def _lines(found: Simulation) -> Iterator[str]:
-    things = zip(found.truth.objects, found.laid.table.things, found.points.tolist(), strict=True)
-    for seen, thing, points in things:
-        middle = [(low + high) / 2 for low, high in zip(seen.minimum, seen.maximum, strict=True)]
-        place = f"at {100 * middle[0]:.1f}, {100 * middle[1]:.1f}"
-        shape = f"{thing.shape}{', as there is no shape for its kind' if thing.generic else ''}"
-        yield f"{seen.id:<4} {thing.name:<22} {place:<16} {points:>7} points  {shape}"
-    if found.laid.top_name is not None:
-        yield f"{found.laid.top_name} is the table itself, not one of the things on it."
-    if found.laid.beside:
-        yield f"In the air beside the table: {', '.join(found.laid.beside)}."
-    x, y, z = found.camera.eye.tolist()
-    measured = int(found.cloud.finite.sum())
-    yield f"Camera at {100 * x:.1f}, {100 * y:.1f}, {100 * z:.1f} cm; {measured} of {len(found.cloud)} points measured."
-    for fact in found.laid.missed:
-        yield f"Does not hold: {fact}"
-
-
-def simulation_to_dict(found: Simulation, view: CameraSetup, seed: int) -> dict[str, Any]:
-    """Return a simulation without its points as plain data: the camera with its pose, and each thing with its label."""
-    from deixis.ontology.graph.export import fact_to_dict
-    from deixis.perception.formats.scene_json import scene_to_dict
-
-    camera, sensor = found.camera, view.sensor
-    lens, names = camera.lens, ("width", "height", "fx", "fy", "cx", "cy")
-    things = zip(found.truth.objects, found.laid.table.things, found.points.tolist(), strict=True)
-    return {
-        "simulated": True,
-        "seed": seed,
-        "camera": {**{name: getattr(lens, name) for name in names}, "pose": camera.pose.tolist()},
-        "sensor": {"noise": sensor.noise, "missing": sensor.missing, "quantised": sensor.quantised},
-        "table": {
-            "name": found.laid.top_name,
-            "min": list(found.laid.table.top.low),
-            "max": list(found.laid.table.top.high),
-        },
-        "things": [
-            {
-                "id": seen.id,
-                "name": thing.name,
-                "kind": thing.kind,
-                "shape": thing.shape,
-                "generic": thing.generic,
-                "label": number,
-                "points": points,
-            }
-            for number, (seen, thing, points) in enumerate(things, start=1)
-        ],
-        "points": {"all": len(found.cloud), "measured": int(found.cloud.finite.sum())},
-        "beside": list(found.laid.beside),
-        "missed": [fact_to_dict(fact) for fact in found.laid.missed],
-        "scene": scene_to_dict(found.truth),
-    }

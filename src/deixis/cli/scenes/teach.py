@@ -9,6 +9,7 @@ import typer
 from deixis.cli.common import AsJson, MemoryDir, PerceivedScene, print_json, print_lines
 from deixis.cli.completion import complete_categories
 from deixis.cli.output import note_change
+from deixis.cli.progress import progress_bar
 
 
 def teach(
@@ -28,7 +29,8 @@ def teach(
     from deixis.view_store import category_name
 
     with Session(memory) as session:
-        taught = session.teach(scene, object, label, teacher)
+        with progress_bar("learning the view"):
+            taught = session.teach(scene, object, label, teacher)
         note_change(session.path)
     if as_json:
         print_json(taught_to_dict(taught))

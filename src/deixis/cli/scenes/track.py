@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +13,7 @@ import typer
 
 from deixis.answers import count
 from deixis.cli.common import AsJson, print_json, print_lines
+from deixis.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from deixis.perception.tracking.frames.frame import Frame
@@ -52,15 +54,23 @@ def track(
     from deixis.report.scenes.track import event_line, situation_to_dict, tracking_lines, tracking_to_dict
     from deixis.workflows.scenes.track import track as run
 
+    frames = 0
+
     def each(now: Situation, events: Sequence[TrackedEvent]) -> None:
-        if lines:
+        nonlocal frames
+        frames += 1
+        if progress is not None:
+            progress(frames, None)
+        elif lines:
             print(json.dumps(situation_to_dict(now), ensure_ascii=False), flush=True)
         elif not as_json:
             print_lines(map(event_line, events))
             sys.stdout.flush()
 
     stream = _source(source, rate, grows, patience, intrinsics, (things, actions, seed), camera)
-    found = run(stream if record is None else _Recorded(stream, record), live=live, each=each)
+    is_printed = lines or not as_json  # then the lines show the progress
+    with nullcontext() if is_printed else progress_bar("following, frames") as progress:
+        found = run(stream if record is None else _Recorded(stream, record), live=live, each=each)
     if not found.frames:
         if not found.notes:
             raise CloudError("the source has no frames")

@@ -161,6 +161,43 @@ class Experience:
             {key: -value for key, value in self.sizes.items()},
         )
 
+    def offset(self, first: str, second: str) -> Array | None:
+        """Return the mean offset from the thing of one role to that of another.
+
+        Parameters
+        ----------
+        first, second
+            The roles.
+
+        Returns
+        -------
+        ndarray or None
+            Offset in x and y, in metres; None if the two were never seen together.
+        """
+        if (first, second) in self.apart:
+            return self.apart[first, second].mean
+        return -self.apart[second, first].mean if (second, first) in self.apart else None
+
+    def size(self, role: str) -> Array | None:
+        """Return the mean size of the thing of a role, along the x and y axes as it mostly lay.
+
+        Parameters
+        ----------
+        role
+            The role.
+
+        Returns
+        -------
+        ndarray or None
+            Extents in x and y, in metres; None if no thing of the role was seen.
+        """
+        if role not in self.sizes:
+            return None
+        length, width, _ = np.exp(self.sizes[role].mean) - SIZE_ERROR
+        cosine, sine = self.axes[role].mean if role in self.axes else (1.0, 0.0)
+        along, across = abs(np.cos(np.arctan2(sine, cosine) / 2)), abs(np.sin(np.arctan2(sine, cosine) / 2))
+        return np.array([length * along + width * across, length * across + width * along])
+
     @classmethod
     def of_table(
         cls,

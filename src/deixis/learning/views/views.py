@@ -37,7 +37,7 @@ from deixis.perception.recognition.recogniser import Recogniser, Recognition
 from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
 from deixis.perception.recognition.spread import PRIOR_SPREADS
 from deixis.perception.recognition.views import PackedViews, mapped
-from deixis.perception.scene import Scene
+from deixis.perception.scene import PerceivedObject, Scene
 
 
 @dataclass(frozen=True)
@@ -734,7 +734,9 @@ def candidates_of(answer: Recognition) -> tuple[tuple[str, float], ...]:
     return tuple((one.category, round(one.probability, 4)) for one in answer.candidates)
 
 
-def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
+def recognise(
+    known: Known, scene: Scene, clouds: Sequence[PointCloud | None], progress: Progress | None = None
+) -> Recognised:
     """Name the things of a scene that have a cloud; keep the names that the scene has already.
 
     Parameters
@@ -745,14 +747,19 @@ def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -
         The scene.
     clouds
         Points of each thing of the scene, or None.
+    progress
+        Called before each thing with the number of things done, and the number of all things.
 
     Returns
     -------
     Recognised
         The scene with the names, and the answer for each thing.
     """
-    answers, things = {}, []
+    answers: dict[str, Recognition] = {}
+    things: list[PerceivedObject] = []
     for thing, cloud in zip(scene.objects, clouds, strict=True):
+        if progress is not None:
+            progress(len(things), len(clouds))
         if cloud is not None:
             answer = known.recognise(cloud)
             answers[thing.id] = answer

@@ -184,7 +184,7 @@ def learned_lines(learned: Learned, memory: str | None = None) -> list[str]:
     claims = f", {_count(layout.claims, 'claim')}" if layout.claims else ""
     lines = [
         f"Learned '{layout.name}' as lesson {layout.lesson}: {_count(layout.roles, 'role')}, "
-        f"{_count(layout.facts, 'fact')}{claims}" + (f"; in {memory}" if memory else "")
+        f"{_count(layout.facts, 'fact')}{claims}" + (f"; stored in {memory}" if memory else "")
     ]
     if learned.categories:
         lines.append("Decided, each an example of its category: " + ", ".join(learned.categories))
@@ -219,7 +219,9 @@ def check_lines(checked: Check) -> list[str]:
     table = checked.table
     right = "Nothing is known to be wrong" if table.of(RoleVerdict.UNDETERMINED) else "Nothing is wrong"
     name = checked.layout.name
-    lines = [f"{right} by '{name}'." if table.well else violation(f"This table is not laid as '{name}' says.")]
+    lines = [
+        f"{right} according to '{name}'." if table.well else violation(f"This table is not laid as '{name}' says.")
+    ]
     for entry in table.of(RoleVerdict.MISSING):
         facts = [
             fact for fact in checked.layout.facts if entry.role in (fact.subject, fact.object) and not fact.optional

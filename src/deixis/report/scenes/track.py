@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from deixis.report.knowledge.rows import Row
+
 if TYPE_CHECKING:
     from deixis.perception.tracking.situation import Situation, TrackedThing
     from deixis.workflows.scenes.track import TrackedEvent, Tracking
@@ -144,3 +146,24 @@ def thing_to_dict(thing: TrackedThing) -> dict[str, Any]:
         "first_seen": round(thing.first_seen, 4),
         "seen_at": round(thing.seen_at, 4),
     }
+
+
+def tracking_rows(found: Tracking) -> Iterator[Row]:
+    """Yield a row for each thing, those that are gone included.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis track``.
+
+    Yields
+    ------
+    dict
+        ``id``, ``state`` (``gone`` for a thing that is gone), the centre as ``x``, ``y`` and ``z`` in metres, and
+        ``since``, ``first_seen`` and ``seen_at`` in seconds.
+    """
+    for things, state in ((found.things, None), (found.gone, "gone")):
+        for thing in things:
+            x, y, z = thing.centre.tolist()
+            times = {"since": thing.since, "first_seen": thing.first_seen, "seen_at": thing.seen_at}
+            yield {"id": thing.id, "state": state or thing.state, "x": x, "y": y, "z": z} | times

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -12,18 +11,9 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
-from deixis.reasoning.grounding.questions.inquiry import Exchange
 from deixis.reasoning.grounding.questions.situation import Situation
 from deixis.workflows.grounding.dialogue import AnswerSource, Dialogue
 from deixis.workflows.grounding.ground import ground
-
-
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """Result of a dialogue: the grounding, and the questions with their answers."""
-
-    grounding: Grounding
-    exchanges: tuple[Exchange, ...]
 
 
 def ask(
@@ -33,7 +23,7 @@ def ask(
     out: TextIO,
     meaning: Meaning = SHIPPED,
     time_limit: float = DEFAULT_TIME_LIMIT,
-) -> Asked:
+) -> Grounding:
     """Ground a script with a dialogue that is written to a stream.
 
     This is :func:`deixis.ground` with ``ask=Dialogue(source, out)``.
@@ -53,8 +43,8 @@ def ask(
 
     Returns
     -------
-    Asked
-        The grounding, and the questions with their answers.
+    Grounding
+        The grounding; its ``exchanges`` are the questions with their answers.
 
     Raises
     ------
@@ -74,8 +64,7 @@ def ask(
     >>> asked = ask(script, scene, lambda situation: Oracle({"cup": "o1", "plate": "o3"}, questions), questions)
     >>> print(questions.getvalue().splitlines()[0])
     1. Which one is the plate?   [1.32 bits]
-    >>> [(name, match.perceived) for name, match in asked.grounding.matches.items()]
-    [('cup', 'o1'), ('plate', 'o3')]
+    >>> [(name, match.perceived) for name, match in asked.matches.items()], len(asked.exchanges)
+    ([('cup', 'o1'), ('plate', 'o3')], 2)
     """
-    found = ground(script, scene, ask=Dialogue(source, out), meaning=meaning, time_limit=time_limit)
-    return Asked(found, found.exchanges or ())
+    return ground(script, scene, ask=Dialogue(source, out), meaning=meaning, time_limit=time_limit)

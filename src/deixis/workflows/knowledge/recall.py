@@ -480,7 +480,7 @@ class _Remembering:
             found = gone.run(self.board)
             if found:
                 clock = _clock(self._moment(found[-1].finish.upper), self._present())
-                return f"the {question.thing} is gone since {clock}"
+                return f"the {question.thing} has been gone since {clock}"
             return f"no place of the {question.thing} is recorded"
         if question.kind == "where" and question.when.kind == "before":
             return f"no place of the {question.thing} has ended; it is where it was at first"
@@ -534,7 +534,7 @@ def _local_span(moment: Moment, present: datetime) -> tuple[datetime, datetime]:
             hour = hour % 12 + (12 if words[-1] == "pm" else 0)
         then = midnight.replace(hour=hour, minute=minute, second=second)
     except ValueError as error:
-        raise RecallQuestionError(f"'{moment.value}' is not a time; say it as in '12:30', '3 pm' or 'noon'") from error
+        raise RecallQuestionError(f"'{moment.value}' is not a time; write, say, '12:30', '3 pm' or 'noon'") from error
     then = then if then <= present else then - timedelta(days=1)
     return then, then
 
@@ -583,14 +583,17 @@ def _fact(found: Recall, fact: Recalled) -> str:
     """Return a fluent in words: *the fork was on the plate from 12:00:01 to 12:03:05 (seen)*."""
     statement, fluent = fact.fluent.statement, fact.fluent
     words = (statement.object or "").rstrip(".!")
-    verb = "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
+    start = "" if math.isinf(fluent.start.lower) else f" from {_time(found, fluent.start.lower, fluent.start.upper)}"
+    finish = "" if fluent.is_open else f" to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
+    since = f" since {_time(found, fluent.start.lower, fluent.start.upper)}" if start and fluent.is_open else ""
+    verb = "has been" if since else "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
     if statement.predicate == SAID:
         return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
     elif statement.predicate == EXPECTED:
         sentence = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
         if not fluent.is_open:
-            return f"{sentence}; expected to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-        return f"{sentence}; the {fact.name} was not seen yet, probability {fluent.certainty:.2g}"
+            return f"{sentence}; expected until {_time(found, fluent.finish.lower, fluent.finish.upper)}"
+        return f"{sentence}; the {fact.name} has not been seen yet, probability {fluent.certainty:.2g}"
     elif statement.predicate in (CONTRADICTED, SAME_AS):
         then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
         if statement.predicate == CONTRADICTED:
@@ -605,9 +608,6 @@ def _fact(found: Recall, fact: Recalled) -> str:
         words = relation.phrase if relation is not None else statement.predicate.replace("_", " ")
         other = "" if fact.other is None else f" the {fact.other}"
         text = f"the {fact.name} {verb} {words}{other}"
-    start = "" if math.isinf(fluent.start.lower) else f" from {_time(found, fluent.start.lower, fluent.start.upper)}"
-    finish = "" if fluent.is_open else f" to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-    since = f" since {_time(found, fluent.start.lower, fluent.start.upper)}" if start and fluent.is_open else ""
     return f"{text}{since or start + finish}{_source(fact)}"
 
 

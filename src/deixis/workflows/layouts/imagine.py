@@ -23,7 +23,7 @@ from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.entailment.realisation.demands import is_firm
 from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
-from deixis.reasoning.errors import SettingError
+from deixis.reasoning.errors import SettingError, require_time_limit
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.workflows.layouts.arrange import Arrangement, arrange
 from deixis.workflows.layouts.read import as_script
@@ -164,10 +164,10 @@ def imagine(
     >>> str(imagine(parse_script("dinner_plate on teaspoon")).none.sizes[1])
     'teaspoon, a teaspoon: 11 to 16 cm long and 2.2 to 3.6 cm wide'
     """
-    if count < 1 or seed < 0 or not time_limit >= 0:
-        raise SettingError(
-            f"`count` must be at least 1, `seed` and `time_limit` at least 0, got {count}, {seed} and {time_limit:g}"
-        )
+    for name, value, least in (("count", count, 1), ("seed", seed, 0)):
+        if value < least:
+            raise SettingError(f"`{name}` must be a whole number of at least {least}, got {value}")
+    require_time_limit(time_limit)
     read = as_script(script, deadline=Deadline.after(time_limit))
     graph = _with_claims(read).affirming()
     objects = sized_objects(read, graph)

@@ -157,12 +157,12 @@ def _english_findings(script: Script, reading: Reading) -> Iterator[Finding]:
             yield Finding("E001", problem.source, problem.message, problem.hint, problem.replacement)
     for pronoun in reading.doubtful_pronouns:
         others = " or ".join(f"'{name}'" for name in pronoun.others)
-        message = f"'{pronoun.word}' is taken for '{pronoun.chosen}' and could be {others}"
+        message = f"'{pronoun.word}' is read as '{pronoun.chosen}' but could also mean {others}"
         source = source_of_span(reading.text, pronoun.span, script.file)
-        yield Finding("E002", source, message, "say the noun")
+        yield Finding("E002", source, message, "repeat the noun")
     for name in reading.uncounted:
-        message = f"the number of '{name}' is unknown, so they stand for all things that fit"
-        yield Finding("E003", _written(name, script) or Source(script.file, 1, 1, 1, 1), message, "say how many")
+        message = f"the number of '{name}' is unknown, so the name stands for all things that fit"
+        yield Finding("E003", _written(name, script) or Source(script.file, 1, 1, 1, 1), message, "state the number")
 
 
 def source_of_span(text: str, span: tuple[int, int], file: str) -> Source:

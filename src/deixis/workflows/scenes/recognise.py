@@ -30,7 +30,7 @@ def recognise(
     store
         The perceptual store.
     progress
-        Called while the taught views are read and calibrated, which takes seconds for many views.
+        Called while the taught views are read and calibrated, which takes seconds for many views, then for each thing.
     left_out
         Called with a line for each damaged view.
 
@@ -48,4 +48,4 @@ def recognise(
 
     scene = as_scene(scene)
     clouds = [scene.cloud_of(thing.id) if thing.cloud is not None else None for thing in scene.objects]
-    return recognise_clouds(store.known(scene.frame, progress, left_out), scene, clouds)
+    return recognise_clouds(store.known(scene.frame, progress, left_out), scene, clouds, progress)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import Answer, count
 from deixis.grammar.read import read_script_file
 from deixis.grammar.script import Script
 from deixis.perception.clouds.cloud import PointCloud
@@ -36,17 +37,45 @@ class CameraSetup:
         check_place(self.height, self.back, self.azimuth)
 
 
-@dataclass(frozen=True, eq=False)
-class Simulation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Simulation(Answer):
     """A look at a laid table. ``cloud`` is in the camera's frame, ``truth`` in the table's.
 
     A point's label is 0 for the table, k for the thing ``o{k}`` of the truth, -1 where nothing was measured.
+
+    Attributes
+    ----------
+    laid
+        The laid table.
+    camera
+        The camera with its pose.
+    cloud
+        The measured points, in metres.
+    truth
+        The true scene.
+    view
+        From where the table was looked at, and how well.
+    seed
+        Seed of the noise.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> look = deixis.simulate(deixis.read_script(text="fork left of plate"), seed=1)
+    >>> look.summary().split(", ")[0], len(look.cloud)
+    ('2 things', 307200)
+    >>> [(thing["name"], thing["label"]) for thing in look.to_dict()["things"]]
+    [('fork', 1), ('plate', 2)]
+    >>> bool((look.points > 100).all())
+    True
     """
 
     laid: LaidScript
     camera: Camera
     cloud: PointCloud
     truth: Scene
+    view: CameraSetup
+    seed: int
 
     @property
     def points(self) -> NDArray[np.int64]:
@@ -54,6 +83,11 @@ class Simulation:
         assert self.cloud.labels is not None
         counts: NDArray[np.int64] = np.bincount(self.cloud.labels + 1, minlength=len(self.truth.objects) + 2)
         return counts[1 + FIRST_THING :]
+
+    def summary(self) -> str:
+        """Return the numbers of things and points."""
+        measured = int(self.cloud.finite.sum())
+        return f"{count(len(self.truth.objects), 'thing')}, {measured} of {len(self.cloud)} points measured"
 
 
 def simulate(layout: LaidScript | Script | str | Path, view: CameraSetup | None = None, seed: int = 0) -> Simulation:
@@ -97,4 +131,4 @@ def simulate(layout: LaidScript | Script | str | Path, view: CameraSetup | None 
         laid = lay_script(layout if isinstance(layout, Script) else read_script_file(str(layout)), seed)
     camera = chair_camera(laid.table, view.height, view.back, view.azimuth, view.lens)
     cloud = see(laid.table, camera, view.sensor, seed)
-    return Simulation(laid, camera, cloud, truth_scene(laid.table, laid.viewpoint))
+    return Simulation(laid, camera, cloud, truth_scene(laid.table, laid.viewpoint), view, seed)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from deixis.answers import Answer, count
 from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.errors import CloudError
 from deixis.perception.tracking.frames.frame import Frame
@@ -31,8 +32,8 @@ class TrackedEvent:
     centre: tuple[float, float, float]
 
 
-@dataclass(frozen=True, eq=False)
-class Tracking:
+@dataclass(frozen=True, eq=False, repr=False)
+class Tracking(Answer):
     """Things and events of a stream of clouds.
 
     Parameters
@@ -49,6 +50,16 @@ class Tracking:
         Warnings with their times, at most ``MAX_NOTES``.
     seconds
         Time of the last frame, in seconds.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.Tracking(frames=20, seconds=1.9)
+    >>> found
+    <Tracking 0 things there, 0 gone, after 20 frames in 1.90 s>
+    >>> print(found.to_text())
+    Nothing was tracked.
+    20 frames used, 1.90 s.
     """
 
     things: tuple[TrackedThing, ...] = ()
@@ -59,6 +70,11 @@ class Tracking:
     left_out: int = 0
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+
+    def summary(self) -> str:
+        """Return the numbers of things and frames."""
+        there, gone = count(len(self.things), "thing"), len(self.gone)
+        return f"{there} there, {gone} gone, after {count(self.frames, 'frame')} in {self.seconds:.2f} s"
 
 
 @dataclass

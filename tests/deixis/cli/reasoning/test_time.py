@@ -89,12 +89,12 @@ These cannot all hold:
 Leave out or change any one of these.
 The proof:
     no alternative is left   by cases
-        overlaps or during(b, a)   by stated   [story.fluents.json: relations[4]]
+        overlaps or during(b, a)   stated   [story.fluents.json: relations[4]]
         a.start < a.start   by negative cycle
             b.start < a.start   by definition
                 overlaps(b, a)   by case
             a.finish < b.start   by definition
-                before(a, b)   by stated   [story.fluents.json: relations[3]]
+                before(a, b)   stated   [story.fluents.json: relations[3]]
             a.start < a.finish   by proper interval
         a.finish < a.finish   by negative cycle
             b.finish < a.finish   by definition

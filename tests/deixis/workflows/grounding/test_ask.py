@@ -338,7 +338,7 @@ def test_python_holds_a_dialogue_as_the_command_does() -> None:
     asked = deixis_package.ask(
         example("script1.layout"), SCENE, lambda _: Oracle({name or "": id for name, id in TRUTH.items()}, out), out
     )
-    assert all(match.decided for match in asked.grounding.matches.values())
+    assert all(match.decided for match in asked.matches.values())
 
 
 @pytest.mark.parametrize("viewpoint", ["quarter", "unknown"])

@@ -51,7 +51,7 @@ def ask(board: Blackboard, question: str) -> Recall:
     return recall(question, board, at=3600.0)
 
 
-FORK_NOW = "dinner fork is on the plate since 11:40:00 (seen, certainty 0.97)."
+FORK_NOW = "dinner fork has been on the plate since 11:40:00 (seen, certainty 0.97)."
 FORK_THEN = "dinner fork was left of the plate from 11:30:10 to 11:40:00 (seen)."
 CUP_THEN = "The cup was right of the plate from 11:30:20 to between 12:03:20 and 12:03:30 (seen)."
 NO_SPOON = "Not known: nothing on the blackboard is called 'spoon'; it has: cup, dinner fork, plate, table."
@@ -78,7 +78,7 @@ NO_SPOON = "Not known: nothing on the blackboard is called 'spoon'; it has: cup,
         ("where did I put the fork?", f"The {FORK_NOW}"),
         ("when did you last see the cup?", CUP_THEN),
         ("what have I shown you last?", "Bob showed the cup at 11:30:20."),
-        ("where is the cup?", "Not known: the cup is gone since 12:03:30."),
+        ("where is the cup?", "Not known: the cup has been gone since 12:03:30."),
         ("where was the cup before?", CUP_THEN),
         ("where is the spoon?", NO_SPOON),
         ("what did Ada say?", "Ada said at 11:39:50: put the fork on the plate."),

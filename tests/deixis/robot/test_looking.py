@@ -1,0 +1,62 @@
+"""Where the things of a table belong, as a robot learned it, and the picture of what it concludes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import deixis
+
+FORK, PLATE, KNIFE, CUP = (0.0, 0.02), (0.06, 0.0), (0.36, 0.02), (0.34, 0.3)
+SIZES = {"fork": (0.03, 0.2), "plate": (0.26, 0.26), "knife": (0.02, 0.22), "cup": (0.09, 0.09)}
+TEXT = "layout supper; fork left of plate; knife right of plate; cup above knife"
+
+
+def table(**places: tuple[float, float]) -> deixis.Scene:
+    """A table of labelled things, each with its least corner."""
+    low = np.array([(*place, 0.0) for place in places.values()])
+    high = low + np.array([(*SIZES[name], 0.02) for name in places])
+    return deixis.Scene.from_boxes(low, high, labels=list(places))
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Iterator[deixis.Robot]:
+    """Robot that saw two tables of one layout."""
+    with deixis.Robot(tmp_path / "memory") as robot:
+        for at, shift in ((1.0, 0.0), (2.0, 0.01)):
+            robot.sees(table(fork=FORK, plate=PLATE, knife=(KNIFE[0] + shift, KNIFE[1]), cup=CUP), at=at)
+            robot.told(TEXT, at=at + 0.5)
+        yield robot
+
+
+def test_a_missing_thing_belongs_where_it_was_on_other_tables(robot: deixis.Robot) -> None:
+    robot.sees(table(fork=FORK, plate=PLATE, knife=KNIFE), at=3.0)
+    look = robot.look()
+    assert [str(fault) for fault in look.faults()] == ["the cup is missing"]
+    (place,) = look.places().values()
+    assert place == pytest.approx(np.array([CUP, np.add(CUP, SIZES["cup"])]), abs=0.01)
+
+
+def test_swapped_things_belong_in_the_places_of_each_other(robot: deixis.Robot) -> None:
+    robot.sees(table(fork=(0.36, 0.02), plate=PLATE, knife=(0.0, 0.02), cup=CUP), at=3.0)
+    look = robot.look()
+    places = look.places()
+    assert places.keys() == {"fork", "knife"}
+    assert places["fork"].mean(axis=0) == pytest.approx([0.01, 0.13], abs=0.001)
+    assert places["knife"].mean(axis=0) == pytest.approx([0.375, 0.12], abs=0.001)
+
+
+def test_the_picture_shows_where_things_belong(robot: deixis.Robot) -> None:
+    pytest.importorskip("matplotlib")
+    robot.sees(table(fork=FORK, plate=PLATE, knife=KNIFE), at=3.0)
+    figure = robot.look().plot()
+    assert "cup belongs here" in [text.get_text() for text in figure.axes[0].texts]
+    assert [text.get_text() for text in figure.legends[0].texts] == ["where it belongs"]
+
+
+def test_a_table_without_mistakes_has_no_such_places(robot: deixis.Robot) -> None:
+    robot.sees(table(fork=FORK, plate=PLATE, knife=KNIFE, cup=CUP), at=3.0)
+    assert not robot.look().places()
