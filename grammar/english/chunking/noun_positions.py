@@ -28,6 +28,7 @@ from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PL
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import (
     FIND_VERBS,
+    LINKING_VERBS,
     NAMED_LIKE_THINGS,
     PUT_VERBS,
     REPORTS,
@@ -411,6 +412,8 @@ class NounFinder:
             return self._compound_ing(at, before, after) or (after_determiner and not self._nounish(at + 1))
         if norm == "saw" and after in (",", ".", "and", ";", "") and before in ("", ",", ":", "and", "or"):
             return True  # 'from left to right: saw, hammer, pliers'
+        if norm == "saw" and after in IS_FORMS | _CLAUSE_ENDS and before.isalpha() and before not in self._closed | PEOPLE:
+            return True  # 'next to the band saw is …'
         if form.form in ("past", "participle") and not (
             norm in ("set", "cut", "run", "left", "saw") and after_determiner and not self._nounish(at + 1)
         ):
@@ -507,6 +510,8 @@ class NounFinder:
         if after_noun:
             plural = self._nouns.singular(before)[1]
             places = after in prepositions() or after in places_alone()
+            if form.form == "s" and form.lemma in LINKING_VERBS and is_adjective(after):
+                return False  # 'a plant on the windowsill looks nice'
             if form.form == "s" and is_adjective(after) and form.kind in ("posture", "lean") and not places:
                 return (
                     self.norms[at + 2] != "of"

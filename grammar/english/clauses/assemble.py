@@ -15,7 +15,7 @@ from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
-from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS
+from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS, TRANSITIVE_RELATIONS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _REFERS_BACK = re.compile(r"\b(?:it|them|they|these|those)\b", re.IGNORECASE)
@@ -44,6 +44,8 @@ _HANDLING = frozenset(
 """Verbs of *when you … it*, which do not say where the viewer is."""
 _TURNING = frozenset({"turn", "flip"})
 _PLACES = frozenset({"left", "right", "middle", "top", "bottom", "part", "corner", "edge", "end", "side"})
+_CONDITIONS = frozenset({"state", "other", "open", "closed", "empty"})
+"""Properties that pass, of which *while* makes a condition."""
 _UNDONE = frozenset({"almost", "nearly"})
 _FALLING = frozenset({"fall", "drop", "tip", "slide", "slip", "roll"})
 _FACTIVE = frozenset(
@@ -188,6 +190,11 @@ class Assembly:
             return  # it holds in any case
         if link == "in case" and self.clauses:
             return  # a reason: 'a copy is in the box in case the first is lost'
+        if link == "while" and self.clauses and built.verbs and built.verbs[0].group.lemma == "be":
+            told = [p for verb in built.verbs for part in verb.said for p in part.predicates]
+            if told and all(p.relation in _CONDITIONS and not p.arguments for p in told):
+                self._conditional(span, link)  # 'do not put it on the scale while it is hot'
+                return
         if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever", "in case") and (
             built.verbs
             or (built.shape == "fragment" and not built.said and link != "as")
@@ -333,9 +340,11 @@ class Assembly:
         if self.front:
             span = (self.front[0].span[0], self.front[-1].span[1])
             front, self.front = self.front, ()
-            self._append(
-                Clause(None, front, span, Mood.QUESTION if self.asks else Mood.STATEMENT, step=self.raw.step), ""
-            )
+            mood = Mood.QUESTION if self.asks else Mood.STATEMENT
+            said, absolute = _absolutes(list(front))
+            self._append(Clause(None, tuple(said), span, mood, step=self.raw.step), "")
+            for noun, places in absolute:
+                self._append(Clause(noun, places, span, mood, step=self.raw.step), "")
         if self.condition is not None and not self.clauses and fragment is None:
             start = self.raw.start
             misunderstood((start, self.raw.end), "a condition without what it is a condition of")
@@ -630,8 +639,16 @@ class Assembly:
         if mood is Mood.COMMAND:  # 'with a helper, turn the desk over'
             predicates = [p for p in predicates if p.relation != "with" or any(a.predicates for a in p.arguments)]
         made, absolute = _absolutes(predicates + main)
+        shared = tuple(p for p in made if p.relation != "with" and p.positive)
+        if phrase is not None and shared:  # 'the gloves are on the shelf, along with the goggles'
+            absolute += [(a, shared) for p in made if "too" in p.adverbs for a in p.arguments]
+            made = [p for p in made if "too" not in p.adverbs]
         if verb.thing is not None:
-            made = flat(replace(verb, said=(), nominal=None)) + made
+            of_thing = flat(replace(verb, said=(), nominal=None))
+            if group.lemma not in TRANSITIVE_RELATIONS:  # 'I have opened it, with the lamp to my left'
+                of_thing, more = _absolutes(of_thing)
+                absolute = more + absolute
+            made = of_thing + made
         hedges = tuple(a for a in group.adverbs if a in HEDGES)
         hedges += tuple(a for p in made for a in p.adverbs if a in HEDGES - APPROXIMATE and a not in hedges)
         before = [word for at, word in self.hedges if at < span[1]]
@@ -651,7 +668,6 @@ class Assembly:
             thing = replace(verb.thing.phrase, predicates=())  # 'I love the clock. It hangs over the door.'
             added = self._added_about(verb.thing.phrase)
             self._append(Clause(thing, added, span, mood if added else Mood.COMMAND, step=self.raw.step), link)
-            return
         acts = group.kind in ("other", "unknown") and verb.thing is None and group.lemma not in _PLACING
         clause = Clause(
             phrase, tuple(made), span, mood,

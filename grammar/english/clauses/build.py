@@ -23,6 +23,7 @@ from deixis.grammar.english.clauses.predicates import (
     merged,
     moved,
     transitive,
+    with_support,
 )
 from deixis.grammar.english.tree import (
     Adjective,
@@ -34,6 +35,7 @@ from deixis.grammar.english.tree import (
     Viewpoint,
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
+from deixis.grammar.english.vocabulary.function_words import PERSONS
 from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, SURFACES, last_word
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
@@ -160,7 +162,7 @@ class Builder(Transformer[Any, Built]):
                 shown = (Said(noun.extra), *shown)
             return Verb(group, shown, chunk.span, noun)
         if chunk.type == "VERB":
-            said = moved(group, parts[1] or (), chunk.span)
+            said = moved(group, with_support(group, parts[1] or ()), chunk.span)
             return Verb(group, said, chunk.span)
         _, things, said = parts
         if group.lemma in MOVING and said:
@@ -275,6 +277,9 @@ class Builder(Transformer[Any, Built]):
             return Noun(noun)
         if noun.pronoun in ("it", "they", "me", "you", "we", "this", "he", "she"):
             return Noun(noun, tuple(mods))
+        if shared := tuple(p for p in mods if "too" in p.adverbs):  # 'on the tray together with the jug'
+            mods = tuple(p for p in mods if p not in shared)
+            return Noun(_restricted(noun, mods) if mods else noun, shared)
         if noun.head == "back" and noun.owner is not None and mods[0].relation == "to":
             return Noun(_restricted(noun, (replace(mods[0], relation="facing"), *mods[1:])))
         if noun.head in _PARTS and mods[0].relation in ("facing", "pointing"):
@@ -439,7 +444,8 @@ class Builder(Transformer[Any, Built]):
             return (*noun.phrase.predicates, *extra)
         if relation == "-":
             misunderstood(span, f"'{relator.preposition.phrase}' does not say where something is")
-            return extra
+            person = whole.pronoun in PERSONS and not whole.head  # 'a mug for each of you beside the kettle'
+            return (*(p for p in noun.phrase.predicates if p.arguments and person), *extra)
         degree = relator.preposition.degree
         if "as" in relator.adverbs and relation in ("near", "far"):
             degree = Degree.SUPERLATIVE
@@ -449,7 +455,7 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        kept = shaped or written == "over" or written in AWAY_FROM or written.startswith("from ")
+        kept = shaped or written == "over" or written in AWAY_FROM or written.startswith("from ") or "side of" in written
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
@@ -504,7 +510,9 @@ class Builder(Transformer[Any, Built]):
                 if several is not None:
                     member = _beside(member, several)
                 several = replace(member, predicates=()) if member.plural else several
-                found += _accompanied(relator, member, union(chunk.span, noun.phrase.span))
+                made = _accompanied(relator, member, union(chunk.span, noun.phrase.span))
+                joined = relator.preposition.phrase in _SHARING_PLACES and not member.predicates and relator.positive
+                found += [replace(p, adverbs=(*p.adverbs, "too")) for p in made] if joined else made
             found += noun.extra
         return tuple(found)
 
@@ -798,6 +806,9 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
         found = [replace(p, positive=not p.positive) for p in found]
     return found
 
+
+_SHARING_PLACES = frozenset({"along with", "together with"})
+"""Prepositions of a thing that is where the subject is: *the gloves are on the shelf, along with the goggles*."""
 
 _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
 

@@ -34,7 +34,8 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
     """
     for rewrite in (
         _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after,
-        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _with_there_as_being, _with_repeated_predicates, _without_clefts, _without_clefts_of_places,
+        _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -235,6 +236,20 @@ def _without_clefts(chunks: list[Chunk]) -> list[Chunk]:
         plain = be.positive and be.modal is None and not be.adverbs and not be.past
         if definite and plain and type_at(chunks, end) == "REL" and type_at(chunks, end + 1) in FINITE:
             return [*chunks[:i], *chunks[i + 2 : end], *_without_clefts(chunks[end + 1 :])]
+    return chunks
+
+
+def _without_clefts_of_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *next to the stove is where the bin goes* as *the bin goes next to the stove*."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "SUB" or chunk.value != "where" or type_at(chunks, i - 1) != "BE":
+            continue
+        first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
+        place, be, end = chunks[first : i - 1], chunks[i - 1].value, end_before(chunks, i + 1, JOINT_TYPES)
+        plain = be.positive and be.modal is None and not be.past
+        told = type_at(chunks, i + 1) == "NP" and any(c.type in FINITE for c in chunks[i + 1 : end])
+        if plain and told and [c.type for c in place[:2]] == ["PREP", "NP"]:
+            return [*chunks[:first], *chunks[i + 1 : end], *place, *chunks[end:]]
     return chunks
 
 

@@ -245,6 +245,33 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
     return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
 
 
+def with_support(group: VerbGroup, said: tuple[Said, ...]) -> tuple[Said, ...]:
+    """Return the places after a verb of hanging with *on* and *from* as what its subject hangs on.
+
+    Parameters
+    ----------
+    group
+        Verb before the places.
+    said
+        What stands after the verb; a place after another one is a restriction of its noun.
+
+    Returns
+    -------
+    tuple of Said
+        Places in which *it hangs over the fire on a chain* says of the subject, not of the fire, that it is on a chain.
+    """
+    last = said[-1].predicates[-1] if said and said[-1].predicates else None
+    inner = last.arguments[-1].predicates[-1:] if last is not None and last.arguments else ()
+    support = bool(inner) and inner[0].relation in ("on", "from") and bool(inner[0].arguments) and not inner[0].reversed
+    if last is None or group.lemma not in _HANGING or not support or last.relation in ("on", "from"):
+        return said
+    noun = last.arguments[-1]
+    bare = replace(noun, predicates=noun.predicates[:-1], span=(noun.span[0], max(noun.span[0], inner[0].span[0])))
+    here = replace(last, arguments=(*last.arguments[:-1], bare))
+    support_of_subject = replace(inner[0], relation="on")
+    return (*said[:-1], replace(said[-1], predicates=(*said[-1].predicates[:-1], here, support_of_subject)))
+
+
 def destination(predicate: Predicate) -> Predicate:
     """Return *to the drawer* after a verb of motion as the place where the thing is now.
 
@@ -313,7 +340,7 @@ def transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, .
         return (Predicate("parallel_each_other", (), span, value=phrase.adjectives[0]), *things.extra)
     if group.lemma in ("face", "look") or group.kind == "face":
         relation, swap = "facing", False
-    elif group.lemma in ("point", "aim", "open"):
+    elif group.lemma in ("point", "aim"):
         relation, swap = "pointing", False
     elif group.lemma in TRANSITIVE_RELATIONS:
         relation, swap = TRANSITIVE_RELATIONS[group.lemma]
@@ -520,7 +547,7 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "middle"
     elif lemma == "hang" and relation == "part" and arguments:
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
-    elif relation == "next_to" and lemma in _ATTACHING:
+    elif relation == "next_to" and lemma in _ATTACHING and any("side of" in a for a in following.adverbs):
         relation = "touching"  # 'clipped to the side of the jug'
     elif lemma == "align" and relation == "with":
         relation = "aligned"

@@ -470,8 +470,8 @@ class Discourse(Statements):
     def _of_last(self, predicates: tuple[Predicate, ...], part: NounPhrase) -> bool:
         """Read *toes pointing forward* of the last subject; False if there is none."""
         last = next((f.subject for f in self.references.recent if f.subject is not None), None)
-        if last is None:
-            return False
+        if last is None or last.role is not Role.THING:
+            return False  # a floor has no handle
         if last.size > 1 and part.determiner == "the" and any(p.arguments for p in predicates):
             return False  # 'the hinges are next to the tin'
         if last.size > 1 and last_word(part.head) in REMOVABLE:
@@ -495,6 +495,8 @@ class Discourse(Statements):
     def _is_thing(self, subject: NounPhrase, predicates: tuple[Predicate, ...], clause: Clause) -> bool:
         """Return True for parts that lie somewhere by themselves: *Blades are stored in the drawer*."""
         begins = clause.span[0] == self.references.start and clause.mood is Mood.STATEMENT
+        if begins and any(p.relation == "part" and p.arguments and p.part in ("front", "back") for p in predicates):
+            return True  # 'the handle goes on the front of the drawer'
         places = any(p.arguments and p.relation in ("inside", "on", "under", "behind", "next_to") for p in predicates)
         return begins and places and subject.plural and subject.determiner is None and not subject.adjectives
 

@@ -13,6 +13,7 @@ from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.references import POLES, REGIONS, Focus, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.vocabulary.adjectives import is_material_noun
 from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
 from deixis.ontology.graph.claims import PLACES
 
@@ -168,7 +169,7 @@ class Mentions(Drafting, ABC):
             self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))
         if phrase.of is not None and phrase.of.head and new:
             stuff = phrase.of.head
-            if last_word(phrase.head) in VESSELS:
+            if last_word(phrase.head) in VESSELS and not is_material_noun(last_word(stuff)):  # 'a cup of glass'
                 self._add("contents", (entity,), (), value=stuff, how=plain)
 
     def _count(self, phrase: NounPhrase) -> None:

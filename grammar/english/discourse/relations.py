@@ -12,7 +12,7 @@ from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Regi
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, Predicate
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, last_word
-from deixis.ontology.graph.claims import COLLECTIVE
+from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
 
@@ -171,7 +171,11 @@ class Relations(Mentions):
             self._at_region(subject, relation, regions[0])
             return
         if relation == "between":
-            self._between(subject, entities)
+            if predicate.reversed:  # 'the comb and the razor, with a necklace between them'
+                for thing in entities:
+                    self._between(thing, [subject])
+            else:
+                self._between(subject, entities)
             return
         if relation == "among" and self.text[slice(*predicate.span)].casefold().startswith(("of ", "out of ")):
             return  # 'of the two cups one is on the tray'
@@ -317,6 +321,9 @@ class Relations(Mentions):
             self._pair(subject, relation, region.of, False)
         elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching", "against", "aligned"):
             self._add(region.term, (subject,), arguments, value=region.value)
+        elif relation == "far" and region.term in PLACES:  # 'keep it away from the edge'
+            how = replace(self.how, positive=not self.how.positive)
+            self._add(region.term, (subject,), arguments, value=region.value, how=how)
         elif region.of is not None and region.of.role is Role.THING:
             self._pair(subject, relation, region.of, False)
         elif region.of is None:
@@ -342,7 +349,7 @@ class Relations(Mentions):
                     self._add("middle", (subject,), (), value=f"{found.value or ''} edge".strip())
                     self.edge = found.value
                 return
-            if found is not None and found.role is Role.THING:
+            if found is not None and found.role in (Role.THING, Role.SURROUNDING):
                 arguments.append(found)
         if not arguments and predicate.relation in ("end", "edge", "side", "corner") and predicate.part:
             before = [

@@ -129,6 +129,8 @@ class Statements(Relations):
             value = None
         elif value is None or relation in ("other", "position") or value in NOT_STATES:
             return
+        elif relation == "state" and "being" in predicate.adverbs:
+            return  # 'it is being cleaned' tells what happens, and not a state
         self._add(relation, (subject,), (), value=value)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
