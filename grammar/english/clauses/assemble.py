@@ -632,7 +632,10 @@ class Assembly:
                 chosen = (
                     part.predicates if positive else tuple(replace(p, positive=not p.positive) for p in part.predicates)
                 )
-                choices.append(chosen)
+                if positive:
+                    choices.append(chosen)
+                else:  # 'not on the copier or in the sink' is neither
+                    main += chosen
         if self.front and phrase is not None:
             self.shared = tuple(p for p in self.front if p.relation in ("inside", "on") and mood is Mood.COMMAND)
             predicates, self.front = [*self.front, *predicates], ()

@@ -455,7 +455,9 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        kept = shaped or written == "over" or written in AWAY_FROM or written.startswith("from ") or "side of" in written
+        kept = (
+            shaped or written == "over" or written in AWAY_FROM or written.startswith("from ") or "side of" in written
+        )
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,

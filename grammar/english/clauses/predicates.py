@@ -76,6 +76,8 @@ _PASSIVES = {
     "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
 }  # fmt: skip
 """Relation of the agent of a participle to its subject: *surrounded by cups*."""
+_EXTENDING = frozenset({"reach", "extend", "stretch"})
+"""Verbs after which a direction without an object is where a thing points: *its branches reach to the left*."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
 _STATES = frozenset({"burn", "fold", "roll", "turn", "open", "hide", "bury", "tip"})
@@ -527,8 +529,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
         word = " ".join(filter(None, (following.part, relation)))
         return replace(following, relation="pointing", arguments=(), part=word, span=span)
-    elif kind in ("face", "point") or lemma in ("look", "aim"):
-        meaning = "pointing" if kind == "point" else "facing"
+    elif kind in ("face", "point") or lemma in ("look", "aim") or (lemma in _EXTENDING and not arguments):
+        meaning = "pointing" if kind == "point" or lemma in _EXTENDING else "facing"
         if relation == "pointing":
             relation = meaning
         elif not arguments and (relation in _DIRECTIONAL or following.part):
@@ -561,6 +563,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         return replace(following, relation="on", reversed=True, span=span)
     elif relation == "above" and lemma in _COVERING and arguments and arguments[0].head in _OUTER and arguments[0].of:
         relation, arguments = "on", (arguments[0].of,)  # 'draped over the back of the chair'
+    elif relation == "above" and lemma == "hang" and arguments and _is_draped(arguments[0]) and arguments[0].of:
+        relation, arguments = "on", (arguments[0].of,)  # 'the cloth hangs over both ends of the table'
     elif relation == "above" and arguments and arguments[0].head in ("rim", "lip"):
         pass  # 'hooked over the rim'
     elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
@@ -586,6 +590,12 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         positive=positive,
         adverbs=(*marker.adverbs, *following.adverbs),
     )
+
+
+def _is_draped(phrase: NounPhrase) -> bool:
+    """Return True for what a cloth and no lamp hangs over: *both ends of the table*, *the back of the chair*."""
+    several = phrase.head in _OUTER and (phrase.plural or phrase.determiner in ("both", "each", "all"))
+    return several or phrase.head in ("edge", "side", "back")
 
 
 def _distance(measure: Predicate, following: Predicate) -> tuple[Predicate, tuple[Predicate, ...]] | None:

@@ -272,10 +272,16 @@ def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
         chunks[at].type == "SUB" and chunks[at].value == "where" and type_at(chunks, at - 1) in ("BE", "VERB")
         and thing and type_at(chunks, at + 2) in FINITE
     )  # fmt: skip
-    if not there and not free:
+    aside = (
+        chunks[at].type in ("SUB", "REL") and chunks[at].value in ("where", None) and thing and not there
+        and chunks[at + 1].value.pronoun in ("it", "they", "you") and [type_at(chunks, at - k) for k in (2, 1)] == ["PUT", "NP"]
+    )  # 'put it where it cannot fall, between the boxes'  # fmt: skip
+    if not there and not free and not aside:
         return None
     end = end_before(chunks, at + 3, JOINT_TYPES)
-    return end + (free and type_at(chunks, end) in ("COMMA", "COLON")), None
+    if aside and [type_at(chunks, end + k) for k in (0, 1)] != ["COMMA", "PREP"]:
+        return None
+    return end + ((free or aside) and type_at(chunks, end) in ("COMMA", "COLON")), None
 
 
 def _search(chunks: list[Chunk], at: int) -> _Run | None:

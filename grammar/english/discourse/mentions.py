@@ -96,7 +96,15 @@ class Mentions(Drafting, ABC):
     ) -> Entity | None:
         """Return what a phrase stands for, and state what its adjectives, its number and its clauses say of it."""
         if phrase.members:
-            found = [e for m in phrase.members if (e := self._introduce(m, relation, besides)) is not None]
+            found: list[Entity] = []
+            for member in phrase.members:
+                own = found and any(a.pronoun == "it" and not a.head for p in member.predicates for a in p.arguments)
+                if own:  # 'a mirror on the wall and a chair beside it'
+                    self.references.recent.insert(0, Focus(found[-1], [], None, self.how.sentence))
+                entity = self._introduce(member, relation, besides)
+                if own:
+                    self.references.recent.pop(0)
+                found += [] if entity is None else [entity]
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
         phrase = _with_restrictions_of_contents(phrase)
         key = (phrase.span, phrase.head, phrase.count)
@@ -123,7 +131,13 @@ class Mentions(Drafting, ABC):
         carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
         if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
             self._say(besides, phrase.predicates, phrase, focus=False)
-        if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
+        upon = relation in ("on", "inside", "touching", "leaning") and not new and entity.role is Role.THING
+        spots = all(p.relation in PLACES and not p.arguments and not p.reversed for p in phrase.predicates)
+        if phrase.predicates and besides is not None and upon and spots and phrase.determiner == "the":
+            whole = replace(phrase, predicates=())  # 'it is stuck to the glass in the upper right corner'
+            own_parts = tuple(replace(p, arguments=(whole,)) for p in phrase.predicates)
+            self._say(besides, own_parts, phrase, focus=False)
+        elif phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
             self._say(besides, phrase.predicates, phrase, focus=False)
         elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT) and phrase.head not in _SIDES:
             outer, holder = self.how, self.references.holder

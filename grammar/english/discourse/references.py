@@ -675,7 +675,9 @@ class References:
         After *in* and *on* it has the noun of the thing that the one before is in or on: *onions in the bowl, garlic in
         the one behind it*.
         """
-        if phrase.pronoun != "one" or not phrase.predicates:
+        other = phrase.pronoun in ("one", "other") and phrase.determiner in ("other", "the") and relation is not None
+        other = other and (phrase.determiner == "other" or phrase.pronoun == "other")
+        if (phrase.pronoun != "one" or not phrase.predicates) and not other:
             return None
         if besides is not None and relation in ("inside", "on", "under"):
             parallel = next((f.others[0] for f in self.recent[:2] if f.relation == relation and f.others), None)

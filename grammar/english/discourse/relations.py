@@ -9,9 +9,10 @@ from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.mentions import Mentions
 from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
-from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.discourse.surfaces import DIRECTIONS, HOLLOW_SURFACES
 from deixis.grammar.english.tree import Degree, Predicate
-from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.relation_words import prepositions
 from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
@@ -229,7 +230,10 @@ class Relations(Mentions):
         if other.role is Role.VIEWER or other.role is Role.PERSON:
             self._add(relation, (subject,), (), value=other.noun)
         elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
-            if subject.role is not Role.SURFACE and relation in ("on", "inside") and not swapped:
+            hollow = relation == "inside" and last_word(other.noun) in HOLLOW_SURFACES
+            if hollow and subject.role is not Role.SURFACE and not swapped:
+                self._add(relation, (subject,), (), value=other.noun)
+            elif subject.role is not Role.SURFACE and relation in ("on", "inside") and not swapped:
                 self._add("on", (subject,), ())
                 if not self.how.positive and not swapped:
                     self._is_not_here(subject)
@@ -371,9 +375,13 @@ class Relations(Mentions):
 
     def _on_top(self, subject: Entity) -> None:
         """Read *on top*: of the last object, or the farthest one of a line that the subject is a member of."""
-        last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
-        if last is None or last.role is not Role.THING:
+        focus = next((f for f in self.references.recent if f.subject is not subject), None)
+        last = None if focus is None else focus.subject
+        if focus is None or last is None or last.role is not Role.THING:
             return
+        told = [d.how.positive for d in self.drafts if d.how.sentence == focus.sentence and last in d.subjects]
+        if focus.sentence != self.how.sentence and not any(told):
+            return  # after 'keep lilies away from the door', nothing is on top of them
         rest = [leaf for leaf in last.leaves() if leaf is not subject.itself]
         if len(rest) < last.size:
             for other in rest:
@@ -397,6 +405,15 @@ class Relations(Mentions):
 
     def _bare_direction(self, subject: Entity, predicate: Predicate) -> None:
         if self._in_corner(subject, predicate):
+            return
+        after = self.text[predicate.span[1] :]
+        following = predicate.span[1] + len(after) - len(after.lstrip())
+        lost = any(start == following for start, _ in self.references.lost)
+        if lost and self.text[slice(*predicate.span)].casefold() in prepositions():
+            return  # of the words after it, which were not understood
+        own = predicate.viewpoint.own if predicate.viewpoint is not None else None
+        if own is not None and own.pronoun in VIEWER_WORDS and not own.head and predicate.part is None:
+            self._pair(subject, predicate.relation, self.references.viewer, False)  # 'the lamp is to my left'
             return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         if (
