@@ -36,7 +36,7 @@ from deixis.grammar.english.tree import (
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.function_words import PERSONS
-from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, SURFACES, last_word
+from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SUBSTANCES, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
@@ -289,6 +289,9 @@ class Builder(Transformer[Any, Built]):
         flat_below = last_word(noun.head) in SURFACES  # 'the cake on the windowsill with a cloth over it'
         over = {p.relation for p in mods if p.of_one} <= {"above", "around"}
         outer = tuple(p for p in mods if p.of_one) if noun.plural or (flat_below and over) else ()
+        held = any(p.of_one and p.relation == "inside" for p in mods)
+        if held and last_word(noun.head) not in VESSELS | HOLDERS:
+            outer = tuple(p for p in mods if p.of_one)  # 'the bucket stands by the hatch with the tongs in it'
         if noun.determiner is not None:  # 'on a table under the skylight with the pedal on the floor beneath it'
             outer += tuple(p for p in mods if _is_absolute(p))
         if outer:  # 'the plate above the forks with a knife across it'
@@ -364,6 +367,12 @@ class Builder(Transformer[Any, Built]):
         extra = (*extra, *its)
         if other is not None:
             span, extra = union(span, other.phrase.span), (*extra, *other.extra)
+        last_end = noun.phrase.members[-1] if relation == "between" and noun.phrase.members else None
+        of_one = tuple(p for p in last_end.predicates if p.of_one) if last_end is not None else ()
+        if last_end is not None and of_one:  # 'it stands between the door and the mirror with a coat on it'
+            bare = replace(last_end, predicates=tuple(p for p in last_end.predicates if p not in of_one))
+            noun = Noun(replace(noun.phrase, members=(*noun.phrase.members[:-1], bare)), noun.extra)
+            extra = (*extra, *of_one)
         if noun.phrase.head.endswith(("degree angle", "degree")) and relation in ("at", "inside"):
             target = next((p for p in (*noun.phrase.predicates, *extra) if p.relation == "to"), None)
             return () if target is None else (replace(target, relation="diagonal", span=span),)

@@ -265,8 +265,11 @@ def with_support(group: VerbGroup, said: tuple[Said, ...]) -> tuple[Said, ...]:
     last = said[-1].predicates[-1] if said and said[-1].predicates else None
     inner = last.arguments[-1].predicates[-1:] if last is not None and last.arguments else ()
     support = bool(inner) and inner[0].relation in ("on", "from") and bool(inner[0].arguments) and not inner[0].reversed
-    if last is None or group.lemma not in _HANGING or not support or last.relation in ("on", "from"):
+    if last is None or group.lemma not in _HANGING or not support:
         return said
+    definite = last.arguments[-1].determiner == "the" or last.arguments[-1].owner is not None
+    if last.relation in ("on", "from") and not (definite and inner[0].arguments[0].determiner in ("a", "an")):
+        return said  # 'it hangs from a hook on the door', but 'from the lamp on a thread'
     noun = last.arguments[-1]
     bare = replace(noun, predicates=noun.predicates[:-1], span=(noun.span[0], max(noun.span[0], inner[0].span[0])))
     here = replace(last, arguments=(*last.arguments[:-1], bare))

@@ -83,7 +83,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _without(_infinitive), _without(_caused), _without(_depicted), _without(_place_taken), _without(_count_apart),
         _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
@@ -294,6 +294,15 @@ def _search(chunks: list[Chunk], at: int) -> _Run | None:
         and chunks[at + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
     )  # fmt: skip
     return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if looks else None
+
+
+def _caused(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what someone lets others do: *the owner had it moved*, which says of no thing where it is."""
+    types = [type_at(chunks, at + k) for k in range(4)]
+    caused = types == ["NP", "TVERB", "NP", "PART"] and chunks[at + 1].value.lemma in ("have", "get")
+    if not caused or type_at(chunks, at + 4) not in JOINT_TYPES | {""} or not chunks[at].value.head:
+        return None
+    return _unknown(chunks, at, at + 4) if chunks[at + 2].value.pronoun in ("it", "they") else None
 
 
 def _infinitive(chunks: list[Chunk], at: int) -> _Run | None:

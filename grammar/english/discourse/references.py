@@ -13,6 +13,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     ABSTRACT,
     GENERAL,
     GROUPS,
+    HOLDERS,
     PAIRED,
     PARTS,
     PEOPLE,
@@ -20,6 +21,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     REMOVABLE,
     SINGLE_PLURALS,
     SURROUNDINGS,
+    VESSELS,
     VIEWER,
     VIEWER_WORDS,
     last_word,
@@ -714,6 +716,11 @@ class References:
             and OPPOSITES[relation] == listed.relation and besides is not None and listed.subject is not besides
         ):  # fmt: skip
             return listed.others[0]  # 'a fork to the left of the plate and a knife to the right of it'
+        if relation == "inside" and last is not None and last.sentence == self.sentence:
+            named = [e for e in (last.subject, *last.others) if e is not None and e is not besides]
+            hollow = [e for e in named if last_word(e.noun) in VESSELS | HOLDERS and not e.itself.members]
+            if len(hollow) == 1 and named[0] is not hollow[0] and last_word(named[0].noun) not in VESSELS | HOLDERS:
+                return hollow[0]  # 'the filling is in the bowl, with a spoon standing in it'
         several: Entity | None = None
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:

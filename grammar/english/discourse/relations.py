@@ -324,7 +324,8 @@ class Relations(Mentions):
         elif relation in ("against", "touching", "leaning") and region.of is not None and region.of.role is Role.THING:
             self._pair(subject, relation, region.of, False)
         elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching", "against", "aligned"):
-            self._add(region.term, (subject,), arguments, value=region.value)
+            if relation != "touching" or region.of is not None or region.term == "middle":
+                self._add(region.term, (subject,), arguments, value=region.value)  # not of 'tied to the free end'
         elif relation == "far" and region.term in PLACES:  # 'keep it away from the edge'
             how = replace(self.how, positive=not self.how.positive)
             self._add(region.term, (subject,), arguments, value=region.value, how=how)
@@ -372,6 +373,9 @@ class Relations(Mentions):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
             return
         self._add(predicate.relation, (subject,), tuple(arguments), value=part)
+        within = self.text[slice(*predicate.span)].casefold().startswith(("in the ", "inside the "))
+        if within and len(arguments) == 1 and last_word(arguments[0].noun) in VESSELS | HOLDERS:
+            self._pair(subject, "inside", arguments[0], False)  # 'pebbles in the bottom of the jar'
 
     def _on_top(self, subject: Entity) -> None:
         """Read *on top*: of the last object, or the farthest one of a line that the subject is a member of."""
@@ -435,6 +439,10 @@ class Relations(Mentions):
             self._pair(subject, predicate.relation, last, False)
             if predicate.measure is not None and last.role is Role.THING:
                 self._add("distance", (subject,), (last,), metres=predicate.measure.metres)
+            return
+        told = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (subject,)]
+        if not self.how.positive and told and told[-1].arguments and predicate.part is None:
+            self._pair(subject, predicate.relation, told[-1].arguments[0], False)  # 'tongs on top, not underneath'
             return
         value = {"in_front": "near", "behind": "far"}.get(predicate.relation, predicate.part or predicate.relation)
         if predicate.relation in ("in_front", "behind") and not self.how.positive:
