@@ -343,12 +343,12 @@ class Discourse(Statements):
         choices = clause.choices
         if choices:
             self.alternatives += 1
+            outer = self.how
             for option in (predicates, *choices):
-                share = weight / (len(choices) + 1)
-                need_not = self.how.optional if self.how.alternative is None else self.how.need_not_hold
                 self.how = replace(
-                    self.how, alternative=self.alternatives, optional=True, weight=share, need_not_hold=need_not
-                )
+                    outer, alternative=self.alternatives, optional=True, weight=weight / (len(choices) + 1),
+                    need_not_hold=outer.optional,
+                )  # fmt: skip
                 self._say(entity, option, clause.subject)
         else:
             self._say(entity, predicates, subject, existential=clause.existential)
