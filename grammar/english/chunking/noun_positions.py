@@ -529,6 +529,7 @@ class NounFinder:
             if form.form == "s" and is_adjective(after) and form.kind in ("posture", "lean") and not places:
                 return (
                     self.norms[at + 2] != "of"
+                    and self.norms[at + 2] not in PLACE_NOUNS
                     and self.norms[at + 2] not in prepositions().keys() | places_alone().keys()
                 )  # 'the missal rests open on its stand'
             if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":

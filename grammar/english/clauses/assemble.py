@@ -225,7 +225,8 @@ class Assembly:
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
-            if subject.phrase.head and not letting:
+            one = subject.phrase.pronoun == "one" and bool(subject.phrase.adjectives)
+            if (subject.phrase.head or one) and not letting:
                 named = subject.phrase.determiner == "the" or subject.phrase.owner is not None
                 handled = self.opens_list or (named and verb.group.positive)
                 mood = Mood.COMMAND if handled else mood  # 'mind the saw: it …', 'wash the jug. it …'
@@ -446,6 +447,9 @@ class Assembly:
             denied = tuple(replace(p, positive=not p.positive) for p in phrase.predicates)
             phrase = replace(phrase, negated=False, predicates=denied)
         more = (*noun.extra, *(p for part in said for p in part.predicates))
+        if self.clauses and self.text[: span[0]].rstrip().casefold().endswith("because"):
+            misunderstood(span, "a reason without a verb does not say where something is")
+            return  # 'because the postman trips over it'
         if self.asks:
             mood = Mood.QUESTION
         if link == ":" and self._list(phrase, more, span):

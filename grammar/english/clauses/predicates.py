@@ -541,6 +541,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
             relation = meaning
         elif relation in ("to", "at", "facing", "pointing", "inside", "near", "on"):
             relation = meaning
+        elif relation in ("above", "across") and lemma == "look":
+            relation = meaning  # 'the window looks out over the garden'
         elif relation in ("far", "apart"):
             value = Adjective("away", "position", Degree.PLAIN, following.span)
             relation = meaning

@@ -83,7 +83,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_caused), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_depicted), _without(_place_taken), _without(_count_apart),
         _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
@@ -293,6 +293,14 @@ def _search(chunks: list[Chunk], at: int) -> _Run | None:
         and type_at(chunks, at + 1) == "PREP"
         and chunks[at + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
     )  # fmt: skip
+    return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if looks else None
+
+
+def _sought_in_vain(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find where someone looks for a thing that stands first: *the spoon you will look for in vain on the tray*."""
+    person = chunks[at].type == "NP" and chunks[at].value.pronoun in PERSONS and type_at(chunks, at - 1) == "NP"
+    verb = chunks[at + 1].value if person and type_at(chunks, at + 1) in FINITE else None
+    looks = verb is not None and verb.lemma in ("look", "search", "hunt") and type_at(chunks, at + 2) == "UNKNOWN"
     return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if looks else None
 
 

@@ -120,6 +120,13 @@ class Discourse(Statements):
             if labelled is not None:
                 self.references.recent.insert(0, Focus(labelled, [], None, sentence))
             return
+        clauses = self.sentences[sentence].clauses
+        taken = phrase.determiner == "the" and bool(phrase.head or phrase.pronoun == "one") and not phrase.members
+        if taken and not phrase.predicates and clauses and phrase.span[0] < clauses[-1].span[0]:
+            handled = self._introduce(phrase)  # 'take the red one and put it behind the slit'
+            if handled is not None:
+                self.references.recent.insert(0, Focus(handled, [], None, sentence))
+            return
         if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
             return
         if any(last_word(p.head) in ("lot", "content", "list", "thank", "note", "inventory") for p in listed):

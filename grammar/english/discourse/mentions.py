@@ -131,6 +131,10 @@ class Mentions(Drafting, ABC):
         carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
         if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
             self._say(besides, phrase.predicates, phrase, focus=False)
+        outside = tuple(p for p in phrase.predicates if not new and besides is not None and self._bears(entity, p))
+        if outside and besides is not None:  # 'on the desk to the left of the lamp' of a lamp that is on the desk
+            self._say(besides, outside, phrase, focus=False)
+            phrase = replace(phrase, predicates=tuple(p for p in phrase.predicates if p not in outside))
         upon = relation in ("on", "inside", "touching", "leaning") and not new and entity.role is Role.THING
         spots = all(p.relation in PLACES and not p.arguments and not p.reversed for p in phrase.predicates)
         if phrase.predicates and besides is not None and upon and spots and phrase.determiner == "the":
@@ -154,6 +158,18 @@ class Mentions(Drafting, ABC):
             if restriction.subject is entity and restriction.others:
                 self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}
         return entity
+
+    def _bears(self, entity: Entity, predicate: Predicate) -> bool:
+        """Return True for a place beside a thing that is on or inside an entity, which the entity cannot have."""
+        if predicate.relation not in _BESIDE | {"left", "right"} or len(predicate.arguments) != 1 or predicate.reversed:
+            return False
+        phrase = predicate.arguments[0]
+        thing = self.references.earlier(phrase) if phrase.head and phrase.determiner == "the" else None
+        return thing is not None and any(
+            d.relation in ("on", "inside") and d.how.positive and not d.how.past
+            and thing in [s.itself for s in d.subjects] and entity.itself in [a.itself for a in d.arguments]
+            for d in self.drafts
+        )  # fmt: skip
 
     def _end_of_own(self, phrase: NounPhrase) -> int:
         """Return the end of the words that say something of a phrase itself, and not of a thing in its restrictions."""

@@ -348,7 +348,7 @@ class References:
                 continue
             if (phrase.count or 1) > 1 and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'the two rails' after 'a rail'
-            if self._is_further(phrase, entity):
+            if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
             if entity.group is not None and entity.group in self.entities:
                 continue
@@ -427,6 +427,10 @@ class References:
             if rank is not None and 0 < abs(rank) <= len(leaves):
                 from_left = (rank > 0) == (predicate.part not in ("right", "back", "far"))
                 return self._picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
+        apart = any(p.degree is Degree.SUPERLATIVE and p.arguments for p in phrase.predicates)
+        free = [leaf for leaf in leaves if not leaf.is_picked]
+        if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
+            return self._picked(free[0], phrase)  # 'the post nearest the door'
         for adjective in phrase.adjectives:
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
                 return self._picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
@@ -679,6 +683,7 @@ class References:
         """
         other = phrase.pronoun in ("one", "other") and phrase.determiner in ("other", "the") and relation is not None
         other = other and (phrase.determiner == "other" or phrase.pronoun == "other")
+        other = other and self.last_group(besides) is None
         if (phrase.pronoun != "one" or not phrase.predicates) and not other:
             return None
         if besides is not None and relation in ("inside", "on", "under"):
@@ -798,9 +803,11 @@ class References:
 
     def _last_two_subjects(self, besides: Entity | None) -> Entity | None:
         """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*."""
-        last = [f for f in self.recent[:2] if f.subject is not None and f.subject is not besides]
-        if len(last) < 2 or last[0].sentence != last[1].sentence or last[0].others:
+        last = [f for f in self.recent[:3] if f.subject is not None and f.subject is not besides][:2]
+        if len(last) < 2 or last[0].sentence != last[1].sentence:
             return None
+        if last[0].others and last[0].others != last[1].others:
+            return None  # but 'the lamp is at one end of the rail, and the screen at the other'
         pair = [f.subject.itself for f in reversed(last) if f.subject is not None and f.subject.role is Role.THING]
         return Entity("", members=pair) if len(set(pair)) == 2 and not any(e.members for e in pair) else None
 
@@ -820,6 +827,15 @@ def _can_name(head: str, entity: Entity) -> bool:
     """Return True if a noun can name an entity again: its own noun, the end of it, or another noun for it."""
     words = head.split()
     return any(noun.split()[-len(words) :] == words for noun in (entity.noun, *entity.aliases))
+
+
+def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
+    """Return True for *the back door* after *the pantry door*: a side is no part of the longer name."""
+    sides = {a.word for a in phrase.adjectives if a.dimension == "position" and a.degree is Degree.PLAIN}
+    if entity.members or entity.plural or entity.group is not None:
+        return False
+    longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
+    return longer and bool(sides) and not any(("position", word) in entity.adjectives for word in sides)
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:

@@ -283,6 +283,8 @@ class Relations(Mentions):
             entities[0].itself.split(2)
         ends = [e for e in entities if e.role in (Role.THING, Role.SURROUNDING)]
         persons = [e for e in entities if e.role in (Role.VIEWER, Role.PERSON)]
+        if not {leaf.itself for leaf in subject.leaves()}.isdisjoint(leaf.itself for e in ends for leaf in e.leaves()):
+            return  # nothing is between itself and others
         if ends and (len(ends) > 1 or ends[0].size > 1):
             self._add("between", (subject,), tuple(ends))
         elif not ends and persons and (len(persons) > 1 or persons[0].plural or persons[0].size > 1):
