@@ -492,7 +492,8 @@ class VerbChunker(RelatorChunker):
         if group.lemma == "look" and self.norms[end] in ("at", "toward", "towards"):
             return Chunk("TVERB", at, end + 1, group)
         if group.lemma in LINKING_VERBS and self._is_quality(end):  # 'the vase looks lovely on the shelf'
-            return Chunk("BE", at, end, _with(group, "be", "be", "finite"))
+            past = group.past or group.form == "past"
+            return Chunk("BE", at, end, _with(group, "be", "be", "finite", past=past))
         stands = (
             group.kind in ("posture", "lean")
             and group.lemma not in PUT_ONLY

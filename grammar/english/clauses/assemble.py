@@ -305,6 +305,9 @@ class Assembly:
                     misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
                     continue
                 meets = person and verb.group.lemma in _MEETING
+                if meets and moved.group.modal == "can" and verb.group.lemma == "see" and not moved.group.positive:
+                    misunderstood(span, "what cannot be seen may be there")
+                    continue
                 shape = "existential" if meets or verb.group.lemma == "find" else built.shape
                 self._clause(shape, thing, moved, front, span, mood, hedge, link)
                 continue
@@ -314,8 +317,8 @@ class Assembly:
         if acting and objects and len(self.clauses) == known:  # 'we use a lamp, and it hangs over the bar'
             made = replace(objects[-1], predicates=())
             self._append(Clause(made, (), span, Mood.COMMAND, step=self.raw.step), link)
-        told = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
-        self.is_lost = told and len(self.clauses) == known
+        acted = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
+        self.is_lost = acted and len(self.clauses) == known
 
     def finish(self) -> Found:
         """Return the clauses; a single noun phrase without a clause is the fragment of the sentence.

@@ -106,6 +106,7 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in said
             )
+        said = with_support(group, said or ())
         return Built("command", raws, (Verb(group, moved(group, said, put.span) if said else (), put.span),))
 
     def other(self, do: Chunk, top: Noun) -> Built:
@@ -453,8 +454,8 @@ class Builder(Transformer[Any, Built]):
             return (*noun.phrase.predicates, *extra)
         if relation == "-":
             misunderstood(span, f"'{relator.preposition.phrase}' does not say where something is")
-            person = whole.pronoun in PERSONS and not whole.head  # 'a mug for each of you beside the kettle'
-            return (*(p for p in noun.phrase.predicates if p.arguments and person), *extra)
+            personal = whole.pronoun in PERSONS and not whole.head  # 'a mug for each of you beside the kettle'
+            return (*(p for p in noun.phrase.predicates if p.arguments and personal), *extra)
         degree = relator.preposition.degree
         if "as" in relator.adverbs and relation in ("near", "far"):
             degree = Degree.SUPERLATIVE
@@ -464,9 +465,8 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        kept = (
-            shaped or written == "over" or written in AWAY_FROM or written.startswith("from ") or "side of" in written
-        )
+        moving = written == "over" or written in AWAY_FROM or written.startswith(("from ", "to the "))
+        kept = shaped or moving or "side of" in written
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,

@@ -66,6 +66,8 @@ _DIRECTIONAL = frozenset(
 )
 _HANGING = frozenset({"hang", "dangle", "suspend", "swing", "droop", "sling"})
 """Verbs after which what is *from* a thing is on it."""
+_LYING = frozenset({"lay", "lie", "fall", "rest"})
+"""Verbs after which *on its left side* says how a thing lies."""
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 _LEAPING = word_set("jump leap climb walk step pass skip hop")
 """Verbs of a motion past a thing."""
@@ -243,6 +245,11 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
         misunderstood(span, f"'{group.lemma}' does not say where something is")
         return () if group.lemma in _REACHING else said
     first, *others = said
+    over = first.predicates[0] if first.predicates else None
+    draped = over is not None and over.relation == "above" and bool(over.arguments) and _is_draped(over.arguments[0])
+    if group.lemma == "hang" and not group.positive and draped:
+        misunderstood(span, "this does not say whether it is there at all")
+        return ()  # 'the cloth does not hang over both ends of the table'
     marker = Predicate(f"~{group.lemma}~{group.kind}", (), span, positive=True)
     return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
 
@@ -262,6 +269,10 @@ def with_support(group: VerbGroup, said: tuple[Said, ...]) -> tuple[Said, ...]:
     tuple of Said
         Places in which *it hangs over the fire on a chain* says of the subject, not of the fire, that it is on a chain.
     """
+    if group.lemma in _HANGING and said and len(said[-1].predicates) > 1:
+        places = said[-1].predicates  # 'it hangs above it from a nail'
+        made = (p if p.relation != "from" or not p.arguments else replace(p, relation="on") for p in places[1:])
+        said = (*said[:-1], replace(said[-1], predicates=(places[0], *made)))
     last = said[-1].predicates[-1] if said and said[-1].predicates else None
     inner = last.arguments[-1].predicates[-1:] if last is not None and last.arguments else ()
     support = bool(inner) and inner[0].relation in ("on", "from") and bool(inner[0].arguments) and not inner[0].reversed
@@ -552,8 +563,13 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "on"
     elif lemma in ("centre", "center") and relation == "on":
         relation = "middle"
+    elif lemma in _LYING and relation in ("left", "right") and following.part == "side" and _is_it(arguments):
+        lying = Adjective("sideways", "state", Degree.PLAIN, following.span)  # 'lay the frame on its left side'
+        return Predicate("state", (), span, value=lying, positive=marker.positive)
     elif lemma == "hang" and relation == "part" and arguments:
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
+    elif relation in ("behind", "in_front") and lemma in _ATTACHING and any("to the" in a for a in following.adverbs):
+        relation = "touching"  # 'tied to the back of the chair'
     elif relation == "next_to" and lemma in _ATTACHING and any("side of" in a for a in following.adverbs):
         relation = "touching"  # 'clipped to the side of the jug'
     elif lemma == "align" and relation == "with":
@@ -595,6 +611,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         positive=positive,
         adverbs=(*marker.adverbs, *following.adverbs),
     )
+
+
+def _is_it(arguments: tuple[NounPhrase, ...]) -> bool:
+    return bool(arguments) and arguments[0].pronoun in ("it", "they") and not arguments[0].head
 
 
 def _is_draped(phrase: NounPhrase) -> bool:

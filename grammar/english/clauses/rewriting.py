@@ -83,7 +83,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
+        _without(_depicted), _without(_place_taken), _without(_count_apart),
         _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
@@ -274,7 +275,8 @@ def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
     )  # fmt: skip
     aside = (
         chunks[at].type in ("SUB", "REL") and chunks[at].value in ("where", None) and thing and not there
-        and chunks[at + 1].value.pronoun in ("it", "they", "you") and [type_at(chunks, at - k) for k in (2, 1)] == ["PUT", "NP"]
+        and chunks[at + 1].value.pronoun in ("it", "they", "you")
+        and [type_at(chunks, at - k) for k in (2, 1)] == ["PUT", "NP"]
     )  # 'put it where it cannot fall, between the boxes'  # fmt: skip
     if not there and not free and not aside:
         return None
@@ -294,6 +296,22 @@ def _search(chunks: list[Chunk], at: int) -> _Run | None:
         and chunks[at + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
     )  # fmt: skip
     return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if looks else None
+
+
+def _partition(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what the members of a group are of: *two frames, one of my mother and one of a ship*."""
+    if chunks[at].type != "COMMA" or type_at(chunks, at - 1) != "NP":
+        return None
+    end, parts = at + 1, 0
+    while [type_at(chunks, end + k) for k in range(3)] in (["NP", "OF", "NP"], ["NP", "PREP", "NP"]):
+        one, link = chunks[end].value, chunks[end + 1]
+        of = link.type == "OF" or link.value.preposition.phrase in ("for", "of")
+        if one.pronoun != "one" or one.head or one.adjectives or not of:
+            break
+        end, parts = end + 3, parts + 1
+        end = next((k for k in range(end, len(chunks)) if chunks[k].type not in ("COMMA", "AND")), len(chunks))
+    last = chunks[end - 1].type if parts > 1 else ""
+    return (end - (last == "AND"), None) if parts > 1 else None
 
 
 def _sought_in_vain(chunks: list[Chunk], at: int) -> _Run | None:

@@ -98,13 +98,13 @@ class Mentions(Drafting, ABC):
         if phrase.members:
             found: list[Entity] = []
             for member in phrase.members:
-                own = found and any(a.pronoun == "it" and not a.head for p in member.predicates for a in p.arguments)
-                if own:  # 'a mirror on the wall and a chair beside it'
+                beside = any(a.pronoun == "it" and not a.head for p in member.predicates for a in p.arguments)
+                if beside and found:  # 'a mirror on the wall and a chair beside it'
                     self.references.recent.insert(0, Focus(found[-1], [], None, self.how.sentence))
-                entity = self._introduce(member, relation, besides)
-                if own:
+                introduced = self._introduce(member, relation, besides)
+                if beside and found:
                     self.references.recent.pop(0)
-                found += [] if entity is None else [entity]
+                found += [] if introduced is None else [introduced]
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
         phrase = _with_restrictions_of_contents(phrase)
         key = (phrase.span, phrase.head, phrase.count)

@@ -242,7 +242,8 @@ class References:
             for a in phrase.adjectives
             if a.degree is Degree.PLAIN or a.dimension in ("position", "size", "height", "length")
         }
-        written = self.text[phrase.span[0] : phrase.span[1]].casefold()
+        own_end = min((p.span[0] for p in phrase.predicates if p.span[0] > phrase.span[0]), default=phrase.span[1])
+        written = self.text[phrase.span[0] : own_end].casefold()
         words = written.replace(",", " ").split()
         count = phrase.count
         stem = last_word(phrase.head)
@@ -427,6 +428,13 @@ class References:
             if rank is not None and 0 < abs(rank) <= len(leaves):
                 from_left = (rank > 0) == (predicate.part not in ("right", "back", "far"))
                 return self._picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
+        owner = phrase.owner.head if phrase.owner is not None else ""
+        if owner and not phrase.plural and phrase.head:  # 'the passenger's seat' after 'the seats'
+            owned = next((leaf for leaf in leaves if ("picked", f"of {owner}") in leaf.adjectives), None)
+            owned = owned or next((leaf for leaf in leaves if not leaf.is_picked), None)
+            if owned is not None:
+                owned.adjectives.add(("picked", f"of {owner}"))
+                return self._picked(owned, phrase)
         apart = any(p.degree is Degree.SUPERLATIVE and p.arguments for p in phrase.predicates)
         free = [leaf for leaf in leaves if not leaf.is_picked]
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
@@ -585,7 +593,14 @@ class References:
             and not phrase.adjectives
         ):
             return self._singular(relation, besides)  # 'behind that one'
-        if group is None and phrase.pronoun == "one" and any(a.dimension == "colour" for a in phrase.adjectives):
+        label = self.recent[0] if self.recent and self.recent[0].sentence == self.sentence else None
+        named_before = label.subject if label is not None and label.relation is None and not label.others else None
+        coloured = any(a.dimension == "colour" for a in phrase.adjectives)
+        apart = relation is None and phrase.pronoun == "one" and bool(phrase.adjectives) and not coloured
+        several = named_before is not None and named_before.plural and named_before.role is Role.THING
+        if group is None and apart and named_before is not None and several and named_before.noun:
+            return self._new(replace(phrase, head=named_before.noun, pronoun=None), Role.THING)
+        if group is None and phrase.pronoun == "one" and coloured:
             contrasted = self._contrasted(phrase)
             if contrasted is not None:
                 return contrasted

@@ -173,8 +173,9 @@ class Relations(Mentions):
             return
         if relation == "between":
             if predicate.reversed:  # 'the comb and the razor, with a necklace between them'
-                for thing in entities:
-                    self._between(thing, [subject])
+                both = [subject, *others[:1]] if subject.size == 1 and not subject.plural else [subject]
+                for thing in entities:  # also 'the wheel is strapped to the frame, with a card between them'
+                    self._between(thing, [e for e in both if e is not thing])
             else:
                 self._between(subject, entities)
             return
