@@ -483,7 +483,11 @@ class Discourse(Statements):
             return False  # 'the hinges are next to the tin'
         if last.size > 1 and last_word(part.head) in REMOVABLE:
             return True  # 'rosin and cloth are in the case, lid open'
+        outer = self.how
         for predicate in predicates:
+            self.how = replace(outer, positive=outer.positive and predicate.positive)
+            if not predicate.positive and not predicate.arguments and predicate.relation in DIRECTIONS:
+                continue  # 'label on top, not underneath' denies nothing of the whole
             if predicate.relation in ("left", "right") and not predicate.arguments:
                 self._add("pointing", (last,), (), value=predicate.relation)
                 continue

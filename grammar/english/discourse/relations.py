@@ -376,7 +376,8 @@ class Relations(Mentions):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
             return
         self._add(predicate.relation, (subject,), tuple(arguments), value=part)
-        within = self.text[slice(*predicate.span)].casefold().startswith(("in the ", "inside the "))
+        words = self.text[slice(*predicate.span)].casefold()
+        within = words.startswith(("in the ", "inside the ")) and any(last_word(a.noun) in words for a in arguments)
         if within and len(arguments) == 1 and last_word(arguments[0].noun) in VESSELS | HOLDERS:
             self._pair(subject, "inside", arguments[0], False)  # 'pebbles in the bottom of the jar'
 
@@ -448,7 +449,7 @@ class Relations(Mentions):
             self._pair(subject, predicate.relation, told[-1].arguments[0], False)  # 'tongs on top, not underneath'
             return
         value = {"in_front": "near", "behind": "far"}.get(predicate.relation, predicate.part or predicate.relation)
-        if predicate.relation in ("in_front", "behind") and not self.how.positive:
+        if predicate.relation in ("in_front", "behind", "above", "below") and not self.how.positive:
             return
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
