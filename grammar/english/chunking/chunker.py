@@ -9,6 +9,7 @@ from __future__ import annotations
 from deixis.grammar.english.chunking.chunk import FINITE, Chunk, VerbGroup
 from deixis.grammar.english.chunking.fixed_phrases import FixedPhraseChunker
 from deixis.grammar.english.chunking.noun_positions import is_known
+from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import PARTICLES
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import adjectives, is_material_noun
@@ -108,6 +109,9 @@ class Chunker(FixedPhraseChunker):
         """Return a noun phrase, or an adjective phrase."""
         if self._unknown_imperative(at):
             return Chunk("DO", at, at + 1, VerbGroup(self.norms[at], "unknown", "base"))
+        after_verb = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["VERB"]
+        if after_verb and self.norms[at] in ("first", "last") and self.norms[at + 1] in CLAUSE_ENDS:
+            return Chunk("ADVERB", at, at + 1, self.norms[at])  # 'the drum goes down first, on the rug'
         if self._changes(at):
             return Chunk("DO", at, at + 1, VerbGroup(self.norms[at], "unknown", "base"))
         if (

@@ -568,6 +568,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         return Predicate("state", (), span, value=lying, positive=marker.positive)
     elif lemma == "hang" and relation == "part" and arguments:
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
+    elif relation in ("behind", "in_front") and lemma in _ATTACHING and not arguments:
+        relation = "through"  # 'stuck to the front'
     elif relation in ("behind", "in_front") and lemma in _ATTACHING and any("to the" in a for a in following.adverbs):
         relation = "touching"  # 'tied to the back of the chair'
     elif relation == "next_to" and lemma in _ATTACHING and any("side of" in a for a in following.adverbs):

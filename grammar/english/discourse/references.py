@@ -222,7 +222,10 @@ class References:
         earlier = self._earlier(phrase)
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
-            earlier = next((e for e in others if not _conflicting(e, phrase)), earlier)
+            itself = (
+                None if phrase.adjectives and besides.noun != noun else earlier
+            )  # 'the oat milk behind the whole milk'
+            earlier = next((e for e in others if not _conflicting(e, phrase)), itself)
         of_it = phrase.owner is not None and phrase.owner.pronoun in ("it", "they")
         if of_it and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
             earlier = None  # 'the cake is in its box' beside a cool box
@@ -845,7 +848,7 @@ def _can_name(head: str, entity: Entity) -> bool:
 
 
 def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
-    """Return True for *the back door* after *the pantry door*: a side is no part of the longer name."""
+    """Return True for *the back door* after *the pantry door*: the longer name has no side."""
     sides = {a.word for a in phrase.adjectives if a.dimension == "position" and a.degree is Degree.PLAIN}
     if entity.members or entity.plural or entity.group is not None:
         return False
