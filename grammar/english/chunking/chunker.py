@@ -9,9 +9,10 @@ from __future__ import annotations
 from deixis.grammar.english.chunking.chunk import FINITE, Chunk, VerbGroup
 from deixis.grammar.english.chunking.fixed_phrases import FixedPhraseChunker
 from deixis.grammar.english.chunking.noun_positions import is_known
+from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import PARTICLES
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
-from deixis.grammar.english.vocabulary.adjectives import is_material_noun
+from deixis.grammar.english.vocabulary.adjectives import adjectives, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, NEGATIONS
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
@@ -89,6 +90,13 @@ class Chunker(FixedPhraseChunker):
             previous in ("AND", "COMMA", "THEN", "ADVERB") and any(chunk.type in ("PUT", "DO") for chunk in self.chunks)
         )
 
+    def _changes(self, at: int) -> bool:
+        """Return True for a quality that a command gives to something: *clear the table*, *empty the bin*."""
+        quality = adjectives().get(self.norms[at]) in ("state", "other", "colour") and self.nouns.is_determiner(at + 1)
+        begins = self._previous() in ("", "CUT")
+        begins = begins or (self._previous() == "COMMA" and self.chunks[0].type == "SUB")  # 'before you begin, clear …'
+        return quality and begins and self.norms[at] not in _BEFORE_DETERMINERS
+
     def _is_material_here(self, at: int, end: int) -> bool:
         """Return True for a material, or a side after *whose*, that is a noun: *neither paper nor cloth*."""
         before = [chunk.type for chunk in self.chunks[-2:]]
@@ -100,6 +108,11 @@ class Chunker(FixedPhraseChunker):
     def _noun_phrase(self, at: int) -> Chunk | None:
         """Return a noun phrase, or an adjective phrase."""
         if self._unknown_imperative(at):
+            return Chunk("DO", at, at + 1, VerbGroup(self.norms[at], "unknown", "base"))
+        after_verb = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["VERB"]
+        if after_verb and self.norms[at] in ("first", "last") and self.norms[at + 1] in CLAUSE_ENDS:
+            return Chunk("ADVERB", at, at + 1, self.norms[at])  # 'the drum goes down first, on the rug'
+        if self._changes(at):
             return Chunk("DO", at, at + 1, VerbGroup(self.norms[at], "unknown", "base"))
         if (
             not self._previous() and self.norms[at + 1] in PARTICLES and self.nouns.is_determiner(at + 2)
@@ -172,5 +185,7 @@ _PUNCTUATION = {
     ",": "COMMA", ";": "CUT", ":": "COLON", ".": "CUT", "!": "CUT", "?": "CUT", "(": "COMMA", ")": "COMMA",
     "[": "COMMA", "]": "COMMA", "\u2013": "CUT", "\u2014": "CUT", "-": "CUT", "/": "OR", "\u2026": "CUT",
 }  # fmt: skip
+
+_BEFORE_DETERMINERS = word_set("such only right wrong opposite same last")
 
 _HALF_STATES = word_set("dead empty full open closed finished done eaten asleep")

@@ -196,7 +196,7 @@ class FixedPhraseChunker(JointChunker):
             return Chunk("ADVERB", at, at + 1, norm)  # 'brought in on the tray'
         if norm in ("inward", "inwards", "outward", "outwards") and self.norms[at + 1] in ("to", "toward", "towards"):
             return Chunk("ADVERB", at, at + 1, norm)
-        if norm in ("itself", "themselves") and self._previous() == "NP":
+        if norm in ("itself", "himself", "herself", "themselves") and self._previous() == "NP":
             return Chunk("ADVERB", at, at + 1, norm)  # 'not in the box itself'
         if norm in ("consists", "consist", "comprises") and (self.norms[at + 1] == "of" or norm == "comprises"):
             return Chunk("CUT", at, at + (1 if norm == "comprises" else 2))

@@ -28,6 +28,7 @@ from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PL
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import (
     FIND_VERBS,
+    LINKING_VERBS,
     NAMED_LIKE_THINGS,
     PUT_VERBS,
     REPORTS,
@@ -409,8 +410,21 @@ class NounFinder:
             ):
                 return True
             return self._compound_ing(at, before, after) or (after_determiner and not self._nounish(at + 1))
+        written = self.words[at].text
+        acronym = (
+            len(written) > 1 and written.rstrip("s").isupper() and not all(w.text.isupper() for w in self.words[:at])
+        )
+        if acronym and form.form in ("past", "participle") and (is_adjective(before) or before in DETERMINERS):
+            return True  # 'a red LED'
         if norm == "saw" and after in (",", ".", "and", ";", "") and before in ("", ",", ":", "and", "or"):
             return True  # 'from left to right: saw, hammer, pliers'
+        if (
+            norm == "saw"
+            and after in IS_FORMS | _CLAUSE_ENDS
+            and before.isalpha()
+            and before not in self._closed | PEOPLE
+        ):
+            return True  # 'next to the band saw is …'
         if form.form in ("past", "participle") and not (
             norm in ("set", "cut", "run", "left", "saw") and after_determiner and not self._nounish(at + 1)
         ):
@@ -443,6 +457,9 @@ class NounFinder:
         stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
         if stands and (before in PLACE_NOUNS or (is_adjective(before) and self._nouns.knows(before))):
             return False  # 'in the middle stands the crucifix'
+        holds = form.form == "s" and form.kind == "transitive" and before in PLACE_NOUNS and self._nounish(at + 1)
+        if holds and not is_adjective(self.norms[at - 2]) and self.is_determiner(at - 2):
+            return False  # 'the one in the middle holds buttons'
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
         accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
@@ -507,9 +524,12 @@ class NounFinder:
         if after_noun:
             plural = self._nouns.singular(before)[1]
             places = after in prepositions() or after in places_alone()
+            if form.form == "s" and form.lemma in LINKING_VERBS and is_adjective(after):
+                return False  # 'a plant on the windowsill looks nice'
             if form.form == "s" and is_adjective(after) and form.kind in ("posture", "lean") and not places:
                 return (
                     self.norms[at + 2] != "of"
+                    and self.norms[at + 2] not in PLACE_NOUNS
                     and self.norms[at + 2] not in prepositions().keys() | places_alone().keys()
                 )  # 'the missal rests open on its stand'
             if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":

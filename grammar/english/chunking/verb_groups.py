@@ -14,6 +14,7 @@ from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import (
     FACE_VERBS,
     FIND_VERBS,
+    LINKING_VERBS,
     NAMED_LIKE_THINGS,
     PUT_VERBS,
     REPORTS,
@@ -125,6 +126,7 @@ class VerbChunker(RelatorChunker):
             elif norm in _TENDING and self.norms[i + 1] == "to" and self._is_base(i + 2):
                 modal, verb, i = _TENDING[norm], None if self.norms[i + 2] != "be" else verb, i + 1
             elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
+                adverbs += ["being"] * (norm == "being" and verb == "be")  # 'it is being cleaned'
                 verb, past = "be", past or norm in ("was", "were")
             elif norm in _GETTING and self._is_participle(i + 1):  # 'the pieces get lined up beside it'
                 verb, past = "be", past or norm == "got"
@@ -347,6 +349,9 @@ class VerbChunker(RelatorChunker):
                 return Chunk("PUT", at, end, found)
             if self.nouns.is_noun(i) and self._previous() != "NP":
                 return None
+            active = form.form in ("past", "participle") and form.lemma in TRANSITIVE_RELATIONS
+            if active and self._previous() == "NP" and self._takes_object(form.kind, end):
+                return self._finite(at, end, replace(found, past=True))  # 'the jars beside it held ink'
             end += self.norms[end] in ("back", "out", "up", "down") and self._measure(end + 1) is not None
             return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
         if norm == "open" and self._previous() == "VERB":
@@ -486,6 +491,9 @@ class VerbChunker(RelatorChunker):
             return Chunk("VERB", at, end + 1, _with(group, "enter", "other", group.form))
         if group.lemma == "look" and self.norms[end] in ("at", "toward", "towards"):
             return Chunk("TVERB", at, end + 1, group)
+        if group.lemma in LINKING_VERBS and self._is_quality(end):  # 'the vase looks lovely on the shelf'
+            past = group.past or group.form == "past"
+            return Chunk("BE", at, end, _with(group, "be", "be", "finite", past=past))
         stands = (
             group.kind in ("posture", "lean")
             and group.lemma not in PUT_ONLY
@@ -496,6 +504,13 @@ class VerbChunker(RelatorChunker):
         if stands and subject not in ("i", "you", "we", "they"):
             return Chunk("VERB", at, end, group)
         return Chunk("TVERB" if self._takes_object(group.kind, end) else "VERB", at, end, group)
+
+    def _is_quality(self, at: int) -> bool:
+        """Return True for an adjective after a verb such as *looks*, and False for *directly at the door*."""
+        norm, after = self.norms[at], self.norms[at + 1]
+        manner = norm.endswith("ly") and after in ("at", "to", "toward", "towards", "into", "over", "out", "down", "up")
+        places = norm in prepositions() or norm in places_alone()
+        return not places and not manner and (is_adjective(norm) or norm.endswith("ly"))
 
     def _takes_object(self, kind: str, at: int) -> bool:
         if not self.nouns.starts(at) or self._alone.longest(self.norms, at) is not None or self._match(at) is not None:

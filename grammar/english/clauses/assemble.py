@@ -15,7 +15,7 @@ from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
-from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS
+from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS, TRANSITIVE_RELATIONS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _REFERS_BACK = re.compile(r"\b(?:it|them|they|these|those)\b", re.IGNORECASE)
@@ -44,6 +44,8 @@ _HANDLING = frozenset(
 """Verbs of *when you … it*, which do not say where the viewer is."""
 _TURNING = frozenset({"turn", "flip"})
 _PLACES = frozenset({"left", "right", "middle", "top", "bottom", "part", "corner", "edge", "end", "side"})
+_CONDITIONS = frozenset({"state", "other", "open", "closed", "empty"})
+"""Properties that pass, of which *while* makes a condition."""
 _UNDONE = frozenset({"almost", "nearly"})
 _FALLING = frozenset({"fall", "drop", "tip", "slide", "slip", "roll"})
 _FACTIVE = frozenset(
@@ -188,6 +190,11 @@ class Assembly:
             return  # it holds in any case
         if link == "in case" and self.clauses:
             return  # a reason: 'a copy is in the box in case the first is lost'
+        if link == "while" and self.clauses and built.verbs and built.verbs[0].group.lemma == "be":
+            told = [p for verb in built.verbs for part in verb.said for p in part.predicates]
+            if told and all(p.relation in _CONDITIONS and not p.arguments for p in told):
+                self._conditional(span, link)  # 'do not put it on the scale while it is hot'
+                return
         if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever", "in case") and (
             built.verbs
             or (built.shape == "fragment" and not built.said and link != "as")
@@ -218,7 +225,8 @@ class Assembly:
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
-            if subject.phrase.head and not letting:
+            one = subject.phrase.pronoun == "one" and bool(subject.phrase.adjectives)
+            if (subject.phrase.head or one) and not letting:
                 named = subject.phrase.determiner == "the" or subject.phrase.owner is not None
                 handled = self.opens_list or (named and verb.group.positive)
                 mood = Mood.COMMAND if handled else mood  # 'mind the saw: it …', 'wash the jug. it …'
@@ -297,6 +305,9 @@ class Assembly:
                     misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
                     continue
                 meets = person and verb.group.lemma in _MEETING
+                if meets and moved.group.modal == "can" and verb.group.lemma == "see" and not moved.group.positive:
+                    misunderstood(span, "what cannot be seen may be there")
+                    continue
                 shape = "existential" if meets or verb.group.lemma == "find" else built.shape
                 self._clause(shape, thing, moved, front, span, mood, hedge, link)
                 continue
@@ -306,8 +317,8 @@ class Assembly:
         if acting and objects and len(self.clauses) == known:  # 'we use a lamp, and it hangs over the bar'
             made = replace(objects[-1], predicates=())
             self._append(Clause(made, (), span, Mood.COMMAND, step=self.raw.step), link)
-        told = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
-        self.is_lost = told and len(self.clauses) == known
+        acted = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
+        self.is_lost = acted and len(self.clauses) == known
 
     def finish(self) -> Found:
         """Return the clauses; a single noun phrase without a clause is the fragment of the sentence.
@@ -333,9 +344,11 @@ class Assembly:
         if self.front:
             span = (self.front[0].span[0], self.front[-1].span[1])
             front, self.front = self.front, ()
-            self._append(
-                Clause(None, front, span, Mood.QUESTION if self.asks else Mood.STATEMENT, step=self.raw.step), ""
-            )
+            mood = Mood.QUESTION if self.asks else Mood.STATEMENT
+            said, absolute = _absolutes(list(front))
+            self._append(Clause(None, tuple(said), span, mood, step=self.raw.step), "")
+            for noun, places in absolute:
+                self._append(Clause(noun, places, span, mood, step=self.raw.step), "")
         if self.condition is not None and not self.clauses and fragment is None:
             start = self.raw.start
             misunderstood((start, self.raw.end), "a condition without what it is a condition of")
@@ -437,6 +450,9 @@ class Assembly:
             denied = tuple(replace(p, positive=not p.positive) for p in phrase.predicates)
             phrase = replace(phrase, negated=False, predicates=denied)
         more = (*noun.extra, *(p for part in said for p in part.predicates))
+        if self.clauses and self.text[: span[0]].rstrip().casefold().endswith("because"):
+            misunderstood(span, "a reason without a verb does not say where something is")
+            return  # 'because the postman trips over it'
         if self.asks:
             mood = Mood.QUESTION
         if link == ":" and self._list(phrase, more, span):
@@ -623,15 +639,26 @@ class Assembly:
                 chosen = (
                     part.predicates if positive else tuple(replace(p, positive=not p.positive) for p in part.predicates)
                 )
-                choices.append(chosen)
+                if positive:
+                    choices.append(chosen)
+                else:  # 'not on the copier or in the sink' is neither
+                    main += chosen
         if self.front and phrase is not None:
             self.shared = tuple(p for p in self.front if p.relation in ("inside", "on") and mood is Mood.COMMAND)
             predicates, self.front = [*self.front, *predicates], ()
         if mood is Mood.COMMAND:  # 'with a helper, turn the desk over'
             predicates = [p for p in predicates if p.relation != "with" or any(a.predicates for a in p.arguments)]
         made, absolute = _absolutes(predicates + main)
+        shared = tuple(p for p in made if p.relation != "with" and p.positive)
+        if phrase is not None and shared:  # 'the gloves are on the shelf, along with the goggles'
+            absolute += [(a, shared) for p in made if "too" in p.adverbs for a in p.arguments]
+            made = [p for p in made if "too" not in p.adverbs]
         if verb.thing is not None:
-            made = flat(replace(verb, said=(), nominal=None)) + made
+            of_thing = flat(replace(verb, said=(), nominal=None))
+            if group.lemma not in TRANSITIVE_RELATIONS:  # 'I have opened it, with the lamp to my left'
+                of_thing, more = _absolutes(of_thing)
+                absolute = more + absolute
+            made = of_thing + made
         hedges = tuple(a for a in group.adverbs if a in HEDGES)
         hedges += tuple(a for p in made for a in p.adverbs if a in HEDGES - APPROXIMATE and a not in hedges)
         before = [word for at, word in self.hedges if at < span[1]]
@@ -651,7 +678,6 @@ class Assembly:
             thing = replace(verb.thing.phrase, predicates=())  # 'I love the clock. It hangs over the door.'
             added = self._added_about(verb.thing.phrase)
             self._append(Clause(thing, added, span, mood if added else Mood.COMMAND, step=self.raw.step), link)
-            return
         acts = group.kind in ("other", "unknown") and verb.thing is None and group.lemma not in _PLACING
         clause = Clause(
             phrase, tuple(made), span, mood,

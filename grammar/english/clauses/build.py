@@ -23,6 +23,7 @@ from deixis.grammar.english.clauses.predicates import (
     merged,
     moved,
     transitive,
+    with_support,
 )
 from deixis.grammar.english.tree import (
     Adjective,
@@ -34,7 +35,8 @@ from deixis.grammar.english.tree import (
     Viewpoint,
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
-from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, SURFACES, last_word
+from deixis.grammar.english.vocabulary.function_words import PERSONS
+from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SUBSTANCES, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
@@ -104,6 +106,7 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in said
             )
+        said = with_support(group, said or ())
         return Built("command", raws, (Verb(group, moved(group, said, put.span) if said else (), put.span),))
 
     def other(self, do: Chunk, top: Noun) -> Built:
@@ -160,7 +163,7 @@ class Builder(Transformer[Any, Built]):
                 shown = (Said(noun.extra), *shown)
             return Verb(group, shown, chunk.span, noun)
         if chunk.type == "VERB":
-            said = moved(group, parts[1] or (), chunk.span)
+            said = moved(group, with_support(group, parts[1] or ()), chunk.span)
             return Verb(group, said, chunk.span)
         _, things, said = parts
         if group.lemma in MOVING and said:
@@ -275,6 +278,9 @@ class Builder(Transformer[Any, Built]):
             return Noun(noun)
         if noun.pronoun in ("it", "they", "me", "you", "we", "this", "he", "she"):
             return Noun(noun, tuple(mods))
+        if shared := tuple(p for p in mods if "too" in p.adverbs):  # 'on the tray together with the jug'
+            mods = tuple(p for p in mods if p not in shared)
+            return Noun(_restricted(noun, mods) if mods else noun, shared)
         if noun.head == "back" and noun.owner is not None and mods[0].relation == "to":
             return Noun(_restricted(noun, (replace(mods[0], relation="facing"), *mods[1:])))
         if noun.head in _PARTS and mods[0].relation in ("facing", "pointing"):
@@ -284,6 +290,9 @@ class Builder(Transformer[Any, Built]):
         flat_below = last_word(noun.head) in SURFACES  # 'the cake on the windowsill with a cloth over it'
         over = {p.relation for p in mods if p.of_one} <= {"above", "around"}
         outer = tuple(p for p in mods if p.of_one) if noun.plural or (flat_below and over) else ()
+        held = any(p.of_one and p.relation == "inside" for p in mods)
+        if held and last_word(noun.head) not in VESSELS | HOLDERS:
+            outer = tuple(p for p in mods if p.of_one)  # 'the bucket stands by the hatch with the tongs in it'
         if noun.determiner is not None:  # 'on a table under the skylight with the pedal on the floor beneath it'
             outer += tuple(p for p in mods if _is_absolute(p))
         if outer:  # 'the plate above the forks with a knife across it'
@@ -359,6 +368,12 @@ class Builder(Transformer[Any, Built]):
         extra = (*extra, *its)
         if other is not None:
             span, extra = union(span, other.phrase.span), (*extra, *other.extra)
+        last_end = noun.phrase.members[-1] if relation == "between" and noun.phrase.members else None
+        of_one = tuple(p for p in last_end.predicates if p.of_one) if last_end is not None else ()
+        if last_end is not None and of_one:  # 'it stands between the door and the mirror with a coat on it'
+            bare = replace(last_end, predicates=tuple(p for p in last_end.predicates if p not in of_one))
+            noun = Noun(replace(noun.phrase, members=(*noun.phrase.members[:-1], bare)), noun.extra)
+            extra = (*extra, *of_one)
         if noun.phrase.head.endswith(("degree angle", "degree")) and relation in ("at", "inside"):
             target = next((p for p in (*noun.phrase.predicates, *extra) if p.relation == "to"), None)
             return () if target is None else (replace(target, relation="diagonal", span=span),)
@@ -439,7 +454,8 @@ class Builder(Transformer[Any, Built]):
             return (*noun.phrase.predicates, *extra)
         if relation == "-":
             misunderstood(span, f"'{relator.preposition.phrase}' does not say where something is")
-            return extra
+            personal = whole.pronoun in PERSONS and not whole.head  # 'a mug for each of you beside the kettle'
+            return (*(p for p in noun.phrase.predicates if p.arguments and personal), *extra)
         degree = relator.preposition.degree
         if "as" in relator.adverbs and relation in ("near", "far"):
             degree = Degree.SUPERLATIVE
@@ -449,7 +465,8 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        kept = shaped or written == "over" or written in AWAY_FROM or written.startswith("from ")
+        moving = written == "over" or written in AWAY_FROM or written.startswith(("from ", "to the "))
+        kept = shaped or moving or "side of" in written
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
@@ -504,7 +521,9 @@ class Builder(Transformer[Any, Built]):
                 if several is not None:
                     member = _beside(member, several)
                 several = replace(member, predicates=()) if member.plural else several
-                found += _accompanied(relator, member, union(chunk.span, noun.phrase.span))
+                made = _accompanied(relator, member, union(chunk.span, noun.phrase.span))
+                joined = relator.preposition.phrase in _SHARING_PLACES and not member.predicates and relator.positive
+                found += [replace(p, adverbs=(*p.adverbs, "too")) for p in made] if joined else made
             found += noun.extra
         return tuple(found)
 
@@ -798,6 +817,9 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
         found = [replace(p, positive=not p.positive) for p in found]
     return found
 
+
+_SHARING_PLACES = frozenset({"along with", "together with"})
+"""Prepositions of a thing that is where the subject is: *the gloves are on the shelf, along with the goggles*."""
 
 _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
 

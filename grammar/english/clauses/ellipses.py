@@ -34,7 +34,9 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
     """
     for rewrite in (
         _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after,
-        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _with_there_as_being, _with_repeated_predicates, _with_ordinals_apart, _without_clefts,
+        _without_clefts_of_places,
+        _with_places_looked_at, _with_exceptions,
         _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -235,6 +237,45 @@ def _without_clefts(chunks: list[Chunk]) -> list[Chunk]:
         plain = be.positive and be.modal is None and not be.adverbs and not be.past
         if definite and plain and type_at(chunks, end) == "REL" and type_at(chunks, end + 1) in FINITE:
             return [*chunks[:i], *chunks[i + 2 : end], *_without_clefts(chunks[end + 1 :])]
+    return chunks
+
+
+def _with_ordinals_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the first holds rice, the second salt* with the verb for the second, whose noun is what it holds."""
+    for i in range(len(chunks) - 4):
+        types = [type_at(chunks, i + k) for k in range(5)]
+        if types[:3] != ["NP", "TVERB", "NP"] or types[3] not in ("COMMA", "CUT") or types[4] != "NP":
+            continue
+        first, verb, second = chunks[i], chunks[i + 1], chunks[i + 4]
+        counted = [c.value.adjectives[0] if c.value.adjectives else None for c in (first, second)]
+        ranked = [a is not None and a.rank is not None for a in counted]
+        bare = not first.value.head and len(second.value.adjectives) == 1 and " " not in second.value.head
+        if not all(ranked) or not bare or not second.value.head or type_at(chunks, i + 5) not in JOINT_TYPES | {""}:
+            continue
+        rank = second.value.adjectives[0]
+        place = rank.span[1] + 1
+        owner = Chunk(
+            "NP", second.start, second.end, replace(second.value, head="", span=(second.span[0], rank.span[1]))
+        )
+        owner.span = owner.value.span
+        held = replace(second.value, determiner=None, adjectives=(), span=(place, second.span[1]))
+        again = replace(verb, span=(place, place))
+        thing = Chunk("NP", second.start, second.end, held, held.span)
+        return [*chunks[: i + 3], cut(chunks[i + 3]), *_with_ordinals_apart([owner, again, thing, *chunks[i + 5 :]])]
+    return chunks
+
+
+def _without_clefts_of_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *next to the stove is where the bin goes* as *the bin goes next to the stove*."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "SUB" or chunk.value != "where" or type_at(chunks, i - 1) != "BE":
+            continue
+        first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
+        place, be, end = chunks[first : i - 1], chunks[i - 1].value, end_before(chunks, i + 1, JOINT_TYPES)
+        plain = be.positive and be.modal is None and not be.past
+        told = type_at(chunks, i + 1) == "NP" and any(c.type in FINITE for c in chunks[i + 1 : end])
+        if plain and told and [c.type for c in place[:2]] == ["PREP", "NP"]:
+            return [*chunks[:first], *chunks[i + 1 : end], *place, *chunks[end:]]
     return chunks
 
 

@@ -657,12 +657,13 @@ def _kind(
             return "OJ"  # 'a lamp clamped to the edge, its arm bent over the towel'
         introduced = source[end].value.determiner in ("a", "an", "some") or source[end].value.count is not None
         between = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found)
+        known = found[-1].type == "NP" and found[-1].value.determiner == "the" and bool(found[-1].value.head)
         if (
             "THERE" in before
             and "PREP" in before
             and introduced
             and not between
-            and types[placed : placed + 1] == ["PREP"]
+            and (types[placed : placed + 1] == ["PREP"] or (known and bool(source[end].value.head)))
         ):
             return "OJ"  # 'there is a hole in the middle of the board and a peg in the hole'
         if (

@@ -111,6 +111,8 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
         return None  # 'kettle on back ring'
     if head == "o'clock":
         return _made(relator, HOURS.get(phrase.count or 0, "top"), _owner(phrase), span, value=_clock(phrase))
+    if _ROWS.get(head) == "stacked" and relation == "on" and phrase.of is not None:
+        return _made(relator, "on", (phrase.of,), span)  # 'on a pile of letters'
     if head in _ROWS:
         of = () if phrase.of is None else (phrase.of,)
         return _made(relator, _ROWS[head], of, span)

@@ -66,6 +66,8 @@ _DIRECTIONAL = frozenset(
 )
 _HANGING = frozenset({"hang", "dangle", "suspend", "swing", "droop", "sling"})
 """Verbs after which what is *from* a thing is on it."""
+_LYING = frozenset({"lay", "lie", "fall", "rest"})
+"""Verbs after which *on its left side* says how a thing lies."""
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 _LEAPING = word_set("jump leap climb walk step pass skip hop")
 """Verbs of a motion past a thing."""
@@ -76,6 +78,8 @@ _PASSIVES = {
     "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
 }  # fmt: skip
 """Relation of the agent of a participle to its subject: *surrounded by cups*."""
+_EXTENDING = frozenset({"reach", "extend", "stretch"})
+"""Verbs after which a direction without an object is where a thing points: *its branches reach to the left*."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
 _STATES = frozenset({"burn", "fold", "roll", "turn", "open", "hide", "bury", "tip"})
@@ -241,8 +245,47 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
         misunderstood(span, f"'{group.lemma}' does not say where something is")
         return () if group.lemma in _REACHING else said
     first, *others = said
+    over = first.predicates[0] if first.predicates else None
+    draped = over is not None and over.relation == "above" and bool(over.arguments) and _is_draped(over.arguments[0])
+    if group.lemma == "hang" and not group.positive and draped:
+        misunderstood(span, "this does not say whether it is there at all")
+        return ()  # 'the cloth does not hang over both ends of the table'
     marker = Predicate(f"~{group.lemma}~{group.kind}", (), span, positive=True)
     return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
+
+
+def with_support(group: VerbGroup, said: tuple[Said, ...]) -> tuple[Said, ...]:
+    """Return the places after a verb of hanging with *on* and *from* as what its subject hangs on.
+
+    Parameters
+    ----------
+    group
+        Verb before the places.
+    said
+        What stands after the verb; a place after another one is a restriction of its noun.
+
+    Returns
+    -------
+    tuple of Said
+        Places in which *it hangs over the fire on a chain* says of the subject, not of the fire, that it is on a chain.
+    """
+    if group.lemma in _HANGING and said and len(said[-1].predicates) > 1:
+        places = said[-1].predicates  # 'it hangs above it from a nail'
+        made = (p if p.relation != "from" or not p.arguments else replace(p, relation="on") for p in places[1:])
+        said = (*said[:-1], replace(said[-1], predicates=(places[0], *made)))
+    last = said[-1].predicates[-1] if said and said[-1].predicates else None
+    inner = last.arguments[-1].predicates[-1:] if last is not None and last.arguments else ()
+    support = bool(inner) and inner[0].relation in ("on", "from") and bool(inner[0].arguments) and not inner[0].reversed
+    if last is None or group.lemma not in _HANGING or not support:
+        return said
+    definite = last.arguments[-1].determiner == "the" or last.arguments[-1].owner is not None
+    if last.relation in ("on", "from") and not (definite and inner[0].arguments[0].determiner in ("a", "an")):
+        return said  # 'it hangs from a hook on the door', but 'from the lamp on a thread'
+    noun = last.arguments[-1]
+    bare = replace(noun, predicates=noun.predicates[:-1], span=(noun.span[0], max(noun.span[0], inner[0].span[0])))
+    here = replace(last, arguments=(*last.arguments[:-1], bare))
+    support_of_subject = replace(inner[0], relation="on")
+    return (*said[:-1], replace(said[-1], predicates=(*said[-1].predicates[:-1], here, support_of_subject)))
 
 
 def destination(predicate: Predicate) -> Predicate:
@@ -313,7 +356,7 @@ def transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, .
         return (Predicate("parallel_each_other", (), span, value=phrase.adjectives[0]), *things.extra)
     if group.lemma in ("face", "look") or group.kind == "face":
         relation, swap = "facing", False
-    elif group.lemma in ("point", "aim", "open"):
+    elif group.lemma in ("point", "aim"):
         relation, swap = "pointing", False
     elif group.lemma in TRANSITIVE_RELATIONS:
         relation, swap = TRANSITIVE_RELATIONS[group.lemma]
@@ -500,8 +543,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
         word = " ".join(filter(None, (following.part, relation)))
         return replace(following, relation="pointing", arguments=(), part=word, span=span)
-    elif kind in ("face", "point") or lemma in ("look", "aim"):
-        meaning = "pointing" if kind == "point" else "facing"
+    elif kind in ("face", "point") or lemma in ("look", "aim") or (lemma in _EXTENDING and not arguments):
+        meaning = "pointing" if kind == "point" or lemma in _EXTENDING else "facing"
         if relation == "pointing":
             relation = meaning
         elif not arguments and (relation in _DIRECTIONAL or following.part):
@@ -509,6 +552,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
             relation = meaning
         elif relation in ("to", "at", "facing", "pointing", "inside", "near", "on"):
             relation = meaning
+        elif relation in ("above", "across") and lemma == "look":
+            relation = meaning  # 'the window looks out over the garden'
         elif relation in ("far", "apart"):
             value = Adjective("away", "position", Degree.PLAIN, following.span)
             relation = meaning
@@ -518,9 +563,16 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "on"
     elif lemma in ("centre", "center") and relation == "on":
         relation = "middle"
+    elif lemma in _LYING and relation in ("left", "right") and following.part == "side" and _is_it(arguments):
+        lying = Adjective("sideways", "state", Degree.PLAIN, following.span)  # 'lay the frame on its left side'
+        return Predicate("state", (), span, value=lying, positive=marker.positive)
     elif lemma == "hang" and relation == "part" and arguments:
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
-    elif relation == "next_to" and lemma in _ATTACHING:
+    elif relation in ("behind", "in_front") and lemma in _ATTACHING and not arguments:
+        relation = "through"  # 'stuck to the front'
+    elif relation in ("behind", "in_front") and lemma in _ATTACHING and any("to the" in a for a in following.adverbs):
+        relation = "touching"  # 'tied to the back of the chair'
+    elif relation == "next_to" and lemma in _ATTACHING and any("side of" in a for a in following.adverbs):
         relation = "touching"  # 'clipped to the side of the jug'
     elif lemma == "align" and relation == "with":
         relation = "aligned"
@@ -534,6 +586,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         return replace(following, relation="on", reversed=True, span=span)
     elif relation == "above" and lemma in _COVERING and arguments and arguments[0].head in _OUTER and arguments[0].of:
         relation, arguments = "on", (arguments[0].of,)  # 'draped over the back of the chair'
+    elif relation == "above" and lemma == "hang" and arguments and _is_draped(arguments[0]) and arguments[0].of:
+        relation, arguments = "on", (arguments[0].of,)  # 'the cloth hangs over both ends of the table'
     elif relation == "above" and arguments and arguments[0].head in ("rim", "lip"):
         pass  # 'hooked over the rim'
     elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
@@ -559,6 +613,16 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         positive=positive,
         adverbs=(*marker.adverbs, *following.adverbs),
     )
+
+
+def _is_it(arguments: tuple[NounPhrase, ...]) -> bool:
+    return bool(arguments) and arguments[0].pronoun in ("it", "they") and not arguments[0].head
+
+
+def _is_draped(phrase: NounPhrase) -> bool:
+    """Return True for what a cloth and no lamp hangs over: *both ends of the table*, *the back of the chair*."""
+    several = phrase.head in _OUTER and (phrase.plural or phrase.determiner in ("both", "each", "all"))
+    return several or phrase.head in ("edge", "side", "back")
 
 
 def _distance(measure: Predicate, following: Predicate) -> tuple[Predicate, tuple[Predicate, ...]] | None:

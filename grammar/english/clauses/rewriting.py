@@ -83,7 +83,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_depicted), _without(_place_taken), _without(_count_apart),
+        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
+        _without(_depicted), _without(_place_taken), _without(_count_apart),
         _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
@@ -272,10 +273,17 @@ def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
         chunks[at].type == "SUB" and chunks[at].value == "where" and type_at(chunks, at - 1) in ("BE", "VERB")
         and thing and type_at(chunks, at + 2) in FINITE
     )  # fmt: skip
-    if not there and not free:
+    aside = (
+        chunks[at].type in ("SUB", "REL") and chunks[at].value in ("where", None) and thing and not there
+        and chunks[at + 1].value.pronoun in ("it", "they", "you")
+        and [type_at(chunks, at - k) for k in (2, 1)] == ["PUT", "NP"]
+    )  # 'put it where it cannot fall, between the boxes'  # fmt: skip
+    if not there and not free and not aside:
         return None
     end = end_before(chunks, at + 3, JOINT_TYPES)
-    return end + (free and type_at(chunks, end) in ("COMMA", "COLON")), None
+    if aside and [type_at(chunks, end + k) for k in (0, 1)] != ["COMMA", "PREP"]:
+        return None
+    return end + ((free or aside) and type_at(chunks, end) in ("COMMA", "COLON")), None
 
 
 def _search(chunks: list[Chunk], at: int) -> _Run | None:
@@ -288,6 +296,39 @@ def _search(chunks: list[Chunk], at: int) -> _Run | None:
         and chunks[at + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
     )  # fmt: skip
     return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if looks else None
+
+
+def _partition(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what the members of a group are of: *two frames, one of my mother and one of a ship*."""
+    if chunks[at].type != "COMMA" or type_at(chunks, at - 1) != "NP":
+        return None
+    end, parts = at + 1, 0
+    while [type_at(chunks, end + k) for k in range(3)] in (["NP", "OF", "NP"], ["NP", "PREP", "NP"]):
+        one, link = chunks[end].value, chunks[end + 1]
+        of = link.type == "OF" or link.value.preposition.phrase in ("for", "of")
+        if one.pronoun != "one" or one.head or one.adjectives or not of:
+            break
+        end, parts = end + 3, parts + 1
+        end = next((k for k in range(end, len(chunks)) if chunks[k].type not in ("COMMA", "AND")), len(chunks))
+    last = chunks[end - 1].type if parts > 1 else ""
+    return (end - (last == "AND"), None) if parts > 1 else None
+
+
+def _sought_in_vain(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find where someone looks for a thing that stands first: *the spoon you will look for in vain on the tray*."""
+    person = chunks[at].type == "NP" and chunks[at].value.pronoun in PERSONS and type_at(chunks, at - 1) == "NP"
+    verb = chunks[at + 1].value if person and type_at(chunks, at + 1) in FINITE else None
+    looks = verb is not None and verb.lemma in ("look", "search", "hunt") and type_at(chunks, at + 2) == "UNKNOWN"
+    return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if looks else None
+
+
+def _caused(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what someone lets others do: *the owner had it moved*, which says of no thing where it is."""
+    types = [type_at(chunks, at + k) for k in range(4)]
+    caused = types == ["NP", "TVERB", "NP", "PART"] and chunks[at + 1].value.lemma in ("have", "get")
+    if not caused or type_at(chunks, at + 4) not in JOINT_TYPES | {""} or not chunks[at].value.head:
+        return None
+    return _unknown(chunks, at, at + 4) if chunks[at + 2].value.pronoun in ("it", "they") else None
 
 
 def _infinitive(chunks: list[Chunk], at: int) -> _Run | None:

@@ -120,6 +120,13 @@ class Discourse(Statements):
             if labelled is not None:
                 self.references.recent.insert(0, Focus(labelled, [], None, sentence))
             return
+        clauses = self.sentences[sentence].clauses
+        taken = phrase.determiner == "the" and bool(phrase.head or phrase.pronoun == "one") and not phrase.members
+        if taken and not phrase.predicates and clauses and phrase.span[0] < clauses[-1].span[0]:
+            handled = self._introduce(phrase)  # 'take the red one and put it behind the slit'
+            if handled is not None:
+                self.references.recent.insert(0, Focus(handled, [], None, sentence))
+            return
         if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
             return
         if any(last_word(p.head) in ("lot", "content", "list", "thank", "note", "inventory") for p in listed):
@@ -343,12 +350,12 @@ class Discourse(Statements):
         choices = clause.choices
         if choices:
             self.alternatives += 1
+            outer = self.how
             for option in (predicates, *choices):
-                share = weight / (len(choices) + 1)
-                need_not = self.how.optional if self.how.alternative is None else self.how.need_not_hold
                 self.how = replace(
-                    self.how, alternative=self.alternatives, optional=True, weight=share, need_not_hold=need_not
-                )
+                    outer, alternative=self.alternatives, optional=True, weight=weight / (len(choices) + 1),
+                    need_not_hold=outer.optional,
+                )  # fmt: skip
                 self._say(entity, option, clause.subject)
         else:
             self._say(entity, predicates, subject, existential=clause.existential)
@@ -470,13 +477,17 @@ class Discourse(Statements):
     def _of_last(self, predicates: tuple[Predicate, ...], part: NounPhrase) -> bool:
         """Read *toes pointing forward* of the last subject; False if there is none."""
         last = next((f.subject for f in self.references.recent if f.subject is not None), None)
-        if last is None:
-            return False
+        if last is None or last.role is not Role.THING:
+            return False  # a floor has no handle
         if last.size > 1 and part.determiner == "the" and any(p.arguments for p in predicates):
             return False  # 'the hinges are next to the tin'
         if last.size > 1 and last_word(part.head) in REMOVABLE:
             return True  # 'rosin and cloth are in the case, lid open'
+        outer = self.how
         for predicate in predicates:
+            self.how = replace(outer, positive=outer.positive and predicate.positive)
+            if not predicate.positive and not predicate.arguments and predicate.relation in DIRECTIONS:
+                continue  # 'label on top, not underneath' denies nothing of the whole
             if predicate.relation in ("left", "right") and not predicate.arguments:
                 self._add("pointing", (last,), (), value=predicate.relation)
                 continue
@@ -495,6 +506,8 @@ class Discourse(Statements):
     def _is_thing(self, subject: NounPhrase, predicates: tuple[Predicate, ...], clause: Clause) -> bool:
         """Return True for parts that lie somewhere by themselves: *Blades are stored in the drawer*."""
         begins = clause.span[0] == self.references.start and clause.mood is Mood.STATEMENT
+        if begins and any(p.relation == "part" and p.arguments and p.part in ("front", "back") for p in predicates):
+            return True  # 'the handle goes on the front of the drawer'
         places = any(p.arguments and p.relation in ("inside", "on", "under", "behind", "next_to") for p in predicates)
         return begins and places and subject.plural and subject.determiner is None and not subject.adjectives
 

@@ -68,7 +68,7 @@ class Draft:
         return (self.relation in COLLECTIVE and not one_on_another) or self.relation == "count"
 
 
-TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct)\w*\s+(?:\w+\s+)?away\s+from\b", re.IGNORECASE)
+TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct|open)\w*\s+(?:\w+\s+)?away\s+from\b", re.IGNORECASE)
 """Directions that are denied: *pointing away from the plate*."""
 
 

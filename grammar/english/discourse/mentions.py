@@ -13,6 +13,7 @@ from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.references import POLES, REGIONS, Focus, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.vocabulary.adjectives import is_material_noun
 from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
 from deixis.ontology.graph.claims import PLACES
 
@@ -95,7 +96,15 @@ class Mentions(Drafting, ABC):
     ) -> Entity | None:
         """Return what a phrase stands for, and state what its adjectives, its number and its clauses say of it."""
         if phrase.members:
-            found = [e for m in phrase.members if (e := self._introduce(m, relation, besides)) is not None]
+            found: list[Entity] = []
+            for member in phrase.members:
+                beside = any(a.pronoun == "it" and not a.head for p in member.predicates for a in p.arguments)
+                if beside and found:  # 'a mirror on the wall and a chair beside it'
+                    self.references.recent.insert(0, Focus(found[-1], [], None, self.how.sentence))
+                introduced = self._introduce(member, relation, besides)
+                if beside and found:
+                    self.references.recent.pop(0)
+                found += [] if introduced is None else [introduced]
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
         phrase = _with_restrictions_of_contents(phrase)
         key = (phrase.span, phrase.head, phrase.count)
@@ -122,7 +131,17 @@ class Mentions(Drafting, ABC):
         carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
         if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
             self._say(besides, phrase.predicates, phrase, focus=False)
-        if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
+        outside = tuple(p for p in phrase.predicates if not new and besides is not None and self._bears(entity, p))
+        if outside and besides is not None:  # 'on the desk to the left of the lamp' of a lamp that is on the desk
+            self._say(besides, outside, phrase, focus=False)
+            phrase = replace(phrase, predicates=tuple(p for p in phrase.predicates if p not in outside))
+        upon = relation in ("on", "inside", "touching", "leaning") and not new and entity.role is Role.THING
+        spots = all(p.relation in PLACES and not p.arguments and not p.reversed for p in phrase.predicates)
+        if phrase.predicates and besides is not None and upon and spots and phrase.determiner == "the":
+            whole = replace(phrase, predicates=())  # 'it is stuck to the glass in the upper right corner'
+            own_parts = tuple(replace(p, arguments=(whole,)) for p in phrase.predicates)
+            self._say(besides, own_parts, phrase, focus=False)
+        elif phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
             self._say(besides, phrase.predicates, phrase, focus=False)
         elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT) and phrase.head not in _SIDES:
             outer, holder = self.how, self.references.holder
@@ -139,6 +158,18 @@ class Mentions(Drafting, ABC):
             if restriction.subject is entity and restriction.others:
                 self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}
         return entity
+
+    def _bears(self, entity: Entity, predicate: Predicate) -> bool:
+        """Return True for a place beside a thing that is on or inside an entity, which the entity cannot have."""
+        if predicate.relation not in _BESIDE | {"left", "right"} or len(predicate.arguments) != 1 or predicate.reversed:
+            return False
+        phrase = predicate.arguments[0]
+        thing = self.references.earlier(phrase) if phrase.head and phrase.determiner == "the" else None
+        return thing is not None and any(
+            d.relation in ("on", "inside") and d.how.positive and not d.how.past
+            and thing in [s.itself for s in d.subjects] and entity.itself in [a.itself for a in d.arguments]
+            for d in self.drafts
+        )  # fmt: skip
 
     def _end_of_own(self, phrase: NounPhrase) -> int:
         """Return the end of the words that say something of a phrase itself, and not of a thing in its restrictions."""
@@ -168,7 +199,7 @@ class Mentions(Drafting, ABC):
             self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))
         if phrase.of is not None and phrase.of.head and new:
             stuff = phrase.of.head
-            if last_word(phrase.head) in VESSELS:
+            if last_word(phrase.head) in VESSELS and not is_material_noun(last_word(stuff)):  # 'a cup of glass'
                 self._add("contents", (entity,), (), value=stuff, how=plain)
 
     def _count(self, phrase: NounPhrase) -> None:

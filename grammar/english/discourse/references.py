@@ -13,6 +13,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     ABSTRACT,
     GENERAL,
     GROUPS,
+    HOLDERS,
     PAIRED,
     PARTS,
     PEOPLE,
@@ -20,6 +21,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     REMOVABLE,
     SINGLE_PLURALS,
     SURROUNDINGS,
+    VESSELS,
     VIEWER,
     VIEWER_WORDS,
     last_word,
@@ -220,7 +222,10 @@ class References:
         earlier = self._earlier(phrase)
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
-            earlier = next((e for e in others if not _conflicting(e, phrase)), earlier)
+            itself = (
+                None if phrase.adjectives and besides.noun != noun else earlier
+            )  # 'the oat milk behind the whole milk'
+            earlier = next((e for e in others if not _conflicting(e, phrase)), itself)
         of_it = phrase.owner is not None and phrase.owner.pronoun in ("it", "they")
         if of_it and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
             earlier = None  # 'the cake is in its box' beside a cool box
@@ -240,7 +245,8 @@ class References:
             for a in phrase.adjectives
             if a.degree is Degree.PLAIN or a.dimension in ("position", "size", "height", "length")
         }
-        written = self.text[phrase.span[0] : phrase.span[1]].casefold()
+        own_end = min((p.span[0] for p in phrase.predicates if p.span[0] > phrase.span[0]), default=phrase.span[1])
+        written = self.text[phrase.span[0] : own_end].casefold()
         words = written.replace(",", " ").split()
         count = phrase.count
         stem = last_word(phrase.head)
@@ -346,7 +352,7 @@ class References:
                 continue
             if (phrase.count or 1) > 1 and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'the two rails' after 'a rail'
-            if self._is_further(phrase, entity):
+            if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
             if entity.group is not None and entity.group in self.entities:
                 continue
@@ -425,6 +431,17 @@ class References:
             if rank is not None and 0 < abs(rank) <= len(leaves):
                 from_left = (rank > 0) == (predicate.part not in ("right", "back", "far"))
                 return self._picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
+        owner = phrase.owner.head if phrase.owner is not None else ""
+        if owner and not phrase.plural and phrase.head:  # 'the passenger's seat' after 'the seats'
+            owned = next((leaf for leaf in leaves if ("picked", f"of {owner}") in leaf.adjectives), None)
+            owned = owned or next((leaf for leaf in leaves if not leaf.is_picked), None)
+            if owned is not None:
+                owned.adjectives.add(("picked", f"of {owner}"))
+                return self._picked(owned, phrase)
+        apart = any(p.degree is Degree.SUPERLATIVE and p.arguments for p in phrase.predicates)
+        free = [leaf for leaf in leaves if not leaf.is_picked]
+        if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
+            return self._picked(free[0], phrase)  # 'the post nearest the door'
         for adjective in phrase.adjectives:
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
                 return self._picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
@@ -579,7 +596,14 @@ class References:
             and not phrase.adjectives
         ):
             return self._singular(relation, besides)  # 'behind that one'
-        if group is None and phrase.pronoun == "one" and any(a.dimension == "colour" for a in phrase.adjectives):
+        label = self.recent[0] if self.recent and self.recent[0].sentence == self.sentence else None
+        named_before = label.subject if label is not None and label.relation is None and not label.others else None
+        coloured = any(a.dimension == "colour" for a in phrase.adjectives)
+        apart = relation is None and phrase.pronoun == "one" and bool(phrase.adjectives) and not coloured
+        several = named_before is not None and named_before.plural and named_before.role is Role.THING
+        if group is None and apart and named_before is not None and several and named_before.noun:
+            return self._new(replace(phrase, head=named_before.noun, pronoun=None), Role.THING)
+        if group is None and phrase.pronoun == "one" and coloured:
             contrasted = self._contrasted(phrase)
             if contrasted is not None:
                 return contrasted
@@ -675,7 +699,10 @@ class References:
         After *in* and *on* it has the noun of the thing that the one before is in or on: *onions in the bowl, garlic in
         the one behind it*.
         """
-        if phrase.pronoun != "one" or not phrase.predicates:
+        other = phrase.pronoun in ("one", "other") and phrase.determiner in ("other", "the") and relation is not None
+        other = other and (phrase.determiner == "other" or phrase.pronoun == "other")
+        other = other and self.last_group(besides) is None
+        if (phrase.pronoun != "one" or not phrase.predicates) and not other:
             return None
         if besides is not None and relation in ("inside", "on", "under"):
             parallel = next((f.others[0] for f in self.recent[:2] if f.relation == relation and f.others), None)
@@ -712,6 +739,11 @@ class References:
             and OPPOSITES[relation] == listed.relation and besides is not None and listed.subject is not besides
         ):  # fmt: skip
             return listed.others[0]  # 'a fork to the left of the plate and a knife to the right of it'
+        if relation == "inside" and last is not None and last.sentence == self.sentence:
+            named = [e for e in (last.subject, *last.others) if e is not None and e is not besides]
+            hollow = [e for e in named if last_word(e.noun) in VESSELS | HOLDERS and not e.itself.members]
+            if len(hollow) == 1 and named[0] is not hollow[0] and last_word(named[0].noun) not in VESSELS | HOLDERS:
+                return hollow[0]  # 'the filling is in the bowl, with a spoon standing in it'
         several: Entity | None = None
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:
@@ -789,9 +821,11 @@ class References:
 
     def _last_two_subjects(self, besides: Entity | None) -> Entity | None:
         """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*."""
-        last = [f for f in self.recent[:2] if f.subject is not None and f.subject is not besides]
-        if len(last) < 2 or last[0].sentence != last[1].sentence or last[0].others:
+        last = [f for f in self.recent[:3] if f.subject is not None and f.subject is not besides][:2]
+        if len(last) < 2 or last[0].sentence != last[1].sentence:
             return None
+        if last[0].others and last[0].others != last[1].others:
+            return None  # but 'the lamp is at one end of the rail, and the screen at the other'
         pair = [f.subject.itself for f in reversed(last) if f.subject is not None and f.subject.role is Role.THING]
         return Entity("", members=pair) if len(set(pair)) == 2 and not any(e.members for e in pair) else None
 
@@ -811,6 +845,15 @@ def _can_name(head: str, entity: Entity) -> bool:
     """Return True if a noun can name an entity again: its own noun, the end of it, or another noun for it."""
     words = head.split()
     return any(noun.split()[-len(words) :] == words for noun in (entity.noun, *entity.aliases))
+
+
+def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
+    """Return True for *the back door* after *the pantry door*: the longer name has no side."""
+    sides = {a.word for a in phrase.adjectives if a.dimension == "position" and a.degree is Degree.PLAIN}
+    if entity.members or entity.plural or entity.group is not None:
+        return False
+    longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
+    return longer and bool(sides) and not any(("position", word) in entity.adjectives for word in sides)
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:

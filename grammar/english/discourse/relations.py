@@ -9,10 +9,11 @@ from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.mentions import Mentions
 from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
-from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.discourse.surfaces import DIRECTIONS, HOLLOW_SURFACES
 from deixis.grammar.english.tree import Degree, Predicate
-from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, last_word
-from deixis.ontology.graph.claims import COLLECTIVE
+from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.relation_words import prepositions
+from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
 
@@ -171,7 +172,12 @@ class Relations(Mentions):
             self._at_region(subject, relation, regions[0])
             return
         if relation == "between":
-            self._between(subject, entities)
+            if predicate.reversed:  # 'the comb and the razor, with a necklace between them'
+                both = [subject, *others[:1]] if subject.size == 1 and not subject.plural else [subject]
+                for thing in entities:  # also 'the wheel is strapped to the frame, with a card between them'
+                    self._between(thing, [e for e in both if e is not thing])
+            else:
+                self._between(subject, entities)
             return
         if relation == "among" and self.text[slice(*predicate.span)].casefold().startswith(("of ", "out of ")):
             return  # 'of the two cups one is on the tray'
@@ -225,7 +231,10 @@ class Relations(Mentions):
         if other.role is Role.VIEWER or other.role is Role.PERSON:
             self._add(relation, (subject,), (), value=other.noun)
         elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
-            if subject.role is not Role.SURFACE and relation in ("on", "inside") and not swapped:
+            hollow = relation == "inside" and last_word(other.noun) in HOLLOW_SURFACES
+            if hollow and subject.role is not Role.SURFACE and not swapped:
+                self._add(relation, (subject,), (), value=other.noun)
+            elif subject.role is not Role.SURFACE and relation in ("on", "inside") and not swapped:
                 self._add("on", (subject,), ())
                 if not self.how.positive and not swapped:
                     self._is_not_here(subject)
@@ -275,6 +284,8 @@ class Relations(Mentions):
             entities[0].itself.split(2)
         ends = [e for e in entities if e.role in (Role.THING, Role.SURROUNDING)]
         persons = [e for e in entities if e.role in (Role.VIEWER, Role.PERSON)]
+        if not {leaf.itself for leaf in subject.leaves()}.isdisjoint(leaf.itself for e in ends for leaf in e.leaves()):
+            return  # nothing is between itself and others
         if ends and (len(ends) > 1 or ends[0].size > 1):
             self._add("between", (subject,), tuple(ends))
         elif not ends and persons and (len(persons) > 1 or persons[0].plural or persons[0].size > 1):
@@ -316,7 +327,11 @@ class Relations(Mentions):
         elif relation in ("against", "touching", "leaning") and region.of is not None and region.of.role is Role.THING:
             self._pair(subject, relation, region.of, False)
         elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching", "against", "aligned"):
-            self._add(region.term, (subject,), arguments, value=region.value)
+            if relation != "touching" or region.of is not None or region.term == "middle":
+                self._add(region.term, (subject,), arguments, value=region.value)  # not of 'tied to the free end'
+        elif relation == "far" and region.term in PLACES:  # 'keep it away from the edge'
+            how = replace(self.how, positive=not self.how.positive)
+            self._add(region.term, (subject,), arguments, value=region.value, how=how)
         elif region.of is not None and region.of.role is Role.THING:
             self._pair(subject, relation, region.of, False)
         elif region.of is None:
@@ -342,7 +357,7 @@ class Relations(Mentions):
                     self._add("middle", (subject,), (), value=f"{found.value or ''} edge".strip())
                     self.edge = found.value
                 return
-            if found is not None and found.role is Role.THING:
+            if found is not None and found.role in (Role.THING, Role.SURROUNDING):
                 arguments.append(found)
         if not arguments and predicate.relation in ("end", "edge", "side", "corner") and predicate.part:
             before = [
@@ -361,12 +376,20 @@ class Relations(Mentions):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
             return
         self._add(predicate.relation, (subject,), tuple(arguments), value=part)
+        words = self.text[slice(*predicate.span)].casefold()
+        within = words.startswith(("in the ", "inside the ")) and any(last_word(a.noun) in words for a in arguments)
+        if within and len(arguments) == 1 and last_word(arguments[0].noun) in VESSELS | HOLDERS:
+            self._pair(subject, "inside", arguments[0], False)  # 'pebbles in the bottom of the jar'
 
     def _on_top(self, subject: Entity) -> None:
         """Read *on top*: of the last object, or the farthest one of a line that the subject is a member of."""
-        last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
-        if last is None or last.role is not Role.THING:
+        focus = next((f for f in self.references.recent if f.subject is not subject), None)
+        last = None if focus is None else focus.subject
+        if focus is None or last is None or last.role is not Role.THING:
             return
+        told = [d.how.positive for d in self.drafts if d.how.sentence == focus.sentence and last in d.subjects]
+        if focus.sentence != self.how.sentence and not any(told):
+            return  # after 'keep lilies away from the door', nothing is on top of them
         rest = [leaf for leaf in last.leaves() if leaf is not subject.itself]
         if len(rest) < last.size:
             for other in rest:
@@ -391,6 +414,15 @@ class Relations(Mentions):
     def _bare_direction(self, subject: Entity, predicate: Predicate) -> None:
         if self._in_corner(subject, predicate):
             return
+        after = self.text[predicate.span[1] :]
+        following = predicate.span[1] + len(after) - len(after.lstrip())
+        lost = any(start == following for start, _ in self.references.lost)
+        if lost and self.text[slice(*predicate.span)].casefold() in prepositions():
+            return  # of the words after it, which were not understood
+        own = predicate.viewpoint.own if predicate.viewpoint is not None else None
+        if own is not None and own.pronoun in VIEWER_WORDS and not own.head and predicate.part is None:
+            self._pair(subject, predicate.relation, self.references.viewer, False)  # 'the lamp is to my left'
+            return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         if (
             predicate.part is None
@@ -412,8 +444,12 @@ class Relations(Mentions):
             if predicate.measure is not None and last.role is Role.THING:
                 self._add("distance", (subject,), (last,), metres=predicate.measure.metres)
             return
+        told = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (subject,)]
+        if not self.how.positive and told and told[-1].arguments and predicate.part is None:
+            self._pair(subject, predicate.relation, told[-1].arguments[0], False)  # 'tongs on top, not underneath'
+            return
         value = {"in_front": "near", "behind": "far"}.get(predicate.relation, predicate.part or predicate.relation)
-        if predicate.relation in ("in_front", "behind") and not self.how.positive:
+        if predicate.relation in ("in_front", "behind", "above", "below") and not self.how.positive:
             return
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:

@@ -70,7 +70,8 @@ class Statements(Relations):
                 return  # said of the part alone: 'the rounded edge is at the top'
             if any(a.pronoun in ("it", "they") and not a.head for a in predicate.arguments):
                 return  # 'the drill, its cord wrapped around it'
-            if relation == "upside_down" or (subject.noun in FLEXIBLE and relation in DIRECTIONS | {"under"}):
+            apart = predicate.arguments and relation not in ("inside", "on", "touching", "pointing", "facing")
+            if relation == "upside_down" or (subject.noun in FLEXIBLE and (apart or relation in DIRECTIONS)):
                 return  # the label, and not the bottle; the cable, and not the lamp
             subject = subject.whole
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
@@ -129,6 +130,8 @@ class Statements(Relations):
             value = None
         elif value is None or relation in ("other", "position") or value in NOT_STATES:
             return
+        elif relation == "state" and "being" in predicate.adverbs:
+            return  # 'it is being cleaned' tells what happens, and not a state
         self._add(relation, (subject,), (), value=value)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:

@@ -91,6 +91,8 @@ def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
         for phrase in (*_own_and_members(argument), *_own_and_members(argument.of)):
             noun = last_word(phrase.head)
             told_apart = any(a.dimension in ("position", "colour", "rank") for a in phrase.adjectives)
+            if noun == "top" and phrase.of is not None:
+                continue  # 'on top of the case', 'at the top of the case'
             held = predicate.relation == "inside" and noun in HOLLOW_SURFACES and not of_place
             if noun in SURFACES and phrase.determiner not in ("a", "an") and not told_apart and not held:
                 counts[noun] = counts.get(noun, 0) + (3 if of_place else 1)

@@ -184,6 +184,9 @@ FACE_VERBS = frozenset(
     }
 )
 
+LINKING_VERBS = frozenset({"look", "seem", "appear", "remain", "stay"})
+"""Verbs that join a quality to their subject: *it looks nice*."""
+
 ENTER_VERBS = frozenset(
     {"walking", "entering", "coming", "walk", "enter", "come", "approach", "approaching", "step", "go", "stepping"}
 )

@@ -13,14 +13,14 @@ MIN_FOUND, MIN_RIGHT = 0.8, 0.9
 FLOORS = {
     "unseen": (0.75, 0.9), "counters": (0.75, 0.9), "rooms": (0.8, 0.93), "stations": (0.72, 0.9),
     "visitors": (0.78, 0.92), "arrivals": (0.65, 0.87), "boarders": (0.78, 0.92), "mechanics": (0.8, 0.88),
-    "galleys": (0.7, 0.75),
+    "galleys": (0.75, 0.87),
 }  # fmt: skip
 """Smallest shares of found and of right facts of texts that are harder than the others.
 
 Their authors did not know the reader. It was changed afterwards for those of ``unseen.txt``, ``counters.txt``,
 ``rooms.txt``, ``stations.txt`` and ``visitors.txt``. The texts of ``arrivals.txt`` and ``boarders.txt``, and those of
 ``mechanics.txt`` and ``galleys.txt``, were written by authors who knew the reader, before any of them was read; it was
-changed for all but ``galleys.txt``.
+changed for all of them afterwards.
 """
 
 
@@ -258,7 +258,7 @@ def asserted(text: str) -> list[str]:
         ("Rinse the jug and return it to its box.", ["inside(jug, box)"]),
         ("The phone is in the box, since the cable is too short.", ["inside(phone, box)"]),
         ("Behind the jug lies a pack, its flap opening away from you. At its left stands a jar.",
-         ["behind(pack, jug)", "pointing(flap, 'viewer')", "left(jar, pack)"]),
+         ["behind(pack, jug)", "pointing(flap, 'away')", "left(jar, pack)"]),
         ("The cup is right of the jug; crackers, in a bowl, to the left of it.",
          ["right(cup, jug)", "inside(crackers, bowl)", "left(crackers, jug)"]),
         ("Fold the napkin into a rectangle. The cup is on the box.", ["on(cup, box)"]),
@@ -300,6 +300,92 @@ def asserted(text: str) -> list[str]:
     ],
 )  # fmt: skip
 def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The three jars beside the box held ink.", []),
+        ("The pens are in the jar, along with the ruler.", ["inside(pens, jar)", "inside(ruler, jar)"]),
+        ("Put the pen in the box together with the ruler.", ["inside(pen, box)", "inside(ruler, box)"]),
+        ("The pens were in the jar, along with the ruler.", []),
+        ("Do not set the cup on the scale while it is hot.", []),
+        ("Do not set the cup on the scale. It is being cleaned.", ["not on(cup, scale)"]),
+        ("A comb and a pen lie on the box, with a card between them.",
+         ["on(comb, box)", "on(pen, box)", "between(card, comb, pen)"]),
+        ("The wheel is strapped to the frame, with a card between them.",
+         ["touching(wheel, frame)", "between(card, wheel, frame)"]),
+        ("The pot hangs over the fire on a chain.", ["above(pot, fire)", "on(pot, chain)"]),
+        ("The coat hangs from a hook on the door.", ["on(hook, door)", "on(coat, hook)"]),
+        ("The bag is on the box. The sieve hangs above it from a nail.",
+         ["on(bag, box)", "above(sieve, bag)", "on(sieve, nail)"]),
+        ("There's a mug for each of you beside the jug.", ["next_to(mug, jug)"]),
+        ("Right beside the band saw is where the lamp is mounted.", ["next_to(lamp, band_saw)"]),
+        ("Next to the jug is not where the lamp goes. The pen is in the box.", ["inside(pen, box)"]),
+        ("Is next to the jug where the lamp goes?", []),
+        ("A plant on the mat behind the box looks nice.", ["behind(mat, box)", "on(plant, mat)"]),
+        ("The vase would look nice on the sill.", []),
+        ("The clock looks at the door.", ["facing(clock, 'door')"]),
+        ("There are three drawers. The first holds pens, the second paper, and the third is empty.",
+         ["inside(pens, drawer_1)", "inside(paper, drawer_2)", "empty(drawer_3)"]),
+        ("Please don't leave mugs on the box or in the jug.", ["not on(mugs, box)", "not inside(mugs, jug)"]),
+        ("It can go on the box or to the left of the jug, but never under the jug. The pen is in the box.",
+         ["inside(pen, box)"]),
+        ("The pen is in the box. Put the cup where it can't tip over, between the box and the jug.",
+         ["inside(pen, box)", "between(cup, box, jug)"]),
+        ("There is a mirror on the wall and a chair beside it.", ["on(mirror, wall)", "next_to(chair, mirror)"]),
+        ("There is a lamp on the box and a jar of honey.", ["on(lamp, box)"]),
+        ("The cloth hangs over both ends of the box.", ["on(cloth, box)"]),
+        ("The lamp hangs over the box.", ["above(lamp, box)"]),
+        ("The cloth does not hang over both ends of the table. The pen is in the box.", ["inside(pen, box)"]),
+        ("Three jars stand on the box, of which the one in the middle holds buttons.",
+         ["on(jar_1, box)", "on(jar_2, box)", "on(jar_3, box)", "middle(jar_1)", "inside(buttons, jar_1)"]),
+        ("The parcel is on the box. The lamp is to my left.", ["on(parcel, box)", "left(lamp, 'viewer')"]),
+        ("Keep the jug away from the edge of the box.", ["not edge(jug, box)"]),
+        ("The hook is on the back of the door.", ["part(hook, door, 'back')"]),
+        ("The floor is clean. The handle goes on the front of the box, just above the label.",
+         ["state(floor, 'clean')", "part(handle, box, 'front')", "above(handle, label)"]),
+        ("Clear the table. The pen is in the box.", ["inside(pen, box)"]),
+        ("A red LED is just below the chip.", ["below(led, chip)"]),
+        ("The pot is left of the glass. A card is stuck to the glass in the upper right corner.",
+         ["left(pot, glass)", "corner(card, glass, 'top right')", "touching(card, glass)"]),
+        ("The dummy stands between the box and the jug with a coat on it.",
+         ["between(dummy, box, jug)", "on(coat, dummy)"]),
+        ("The bucket stands by the door with the tongs in it.", ["near(bucket, door)", "inside(tongs, bucket)"]),
+        ("The filling is in the bowl, and a spoon stands in it.", ["inside(filling, bowl)", "inside(spoon, bowl)"]),
+        ("The box was over the door, but the owner had it moved; it is now under the bed.", ["under(box, bed)"]),
+        ("The lamp is on the desk. The cup is on the desk to the left of the lamp. The pen is in the box.",
+         ["on(lamp, desk)", "left(cup, lamp)", "on(cup, desk)", "inside(pen, box)"]),
+        ("The tray is on the box to the left of the lamp.", ["left(box, lamp)", "on(tray, box)"]),
+        ("Three posts stand on the box. A tile leans against the post nearest the jug.",
+         ["on(post_1, box)", "on(post_2, box)", "on(post_3, box)", "nearest(post_1, jug)", "leaning(tile, post_1)"]),
+        ("Leave a finger's width between the pots. The pen is in the box.", ["inside(pen, box)"]),
+        ("Stand the lamp at one end of the rail and the screen at the other. The lens is midway between them.",
+         ["end(lamp, rail)", "end(screen, rail)", "between(lens, lamp, screen)"]),
+        ("The filters are in the box. Take the red one and place it behind the jug.",
+         ["inside(filters, box)", "behind(filter, jug)"]),
+        ("The pen is in the box, because the postman trips over it.", ["inside(pen, box)"]),
+        ("On top of a pile of letters there is a stone.", ["on(stone, letters)"]),
+        ("You can't see the safe. The pen is in the box.", ["inside(pen, box)"]),
+        ("To the right of the jug stand two frames, one of my mother and one of a ship.",
+         ["right(frame_1, jug)", "right(frame_2, jug)"]),
+        ("Balloons are tied to the back of the chair.", ["touching(balloons, chair)"]),
+        ("Lay the frame on its left side. The pen is in the box.", ["state(frame, 'sideways')", "inside(pen, box)"]),
+        ("The cap is next to the tins, label on top, not underneath.", ["next_to(cap, tins)"]),
+        ("The spoon you will look for in vain in the box: it's in the jar.", ["inside(spoon, jar)"]),
+        ("The kettle is on the left burner, so leave the pan on the other one.",
+         ["on(kettle, burner_1)", "on(pan, burner_2)"]),
+        ("The drum goes down first, in the middle of the mat.", ["middle(drum, mat)"]),
+        ("The owner himself put the cup on the box. The pen itself is in the box.",
+         ["on(cup, box)", "inside(pen, box)"]),
+        ("The oat milk is in the crate, behind the whole milk.", ["inside(oat_milk, crate)", "behind(oat_milk, milk)"]),
+        ("The label is stuck to the front. The pen is in the box.", ["inside(pen, box)"]),
+        ("The driftwood leans against the jar, its branches reaching to the left.",
+         ["leaning(driftwood, jar)", "pointing(branches, 'left')"]),
+    ],
+)  # fmt: skip
+def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
 
 
