@@ -243,6 +243,8 @@ def _without_clefts(chunks: list[Chunk]) -> list[Chunk]:
 def _with_ordinals_apart(chunks: list[Chunk]) -> list[Chunk]:
     """Return *the first holds rice, the second salt* with the verb for the second, whose noun is what it holds."""
     for i in range(len(chunks) - 4):
+        if chunks[i].type != "NP" or chunks[i + 1].type != "TVERB":
+            continue
         types = [type_at(chunks, i + k) for k in range(5)]
         if types[:3] != ["NP", "TVERB", "NP"] or types[3] not in ("COMMA", "CUT") or types[4] != "NP":
             continue

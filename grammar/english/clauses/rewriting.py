@@ -324,6 +324,8 @@ def _sought_in_vain(chunks: list[Chunk], at: int) -> _Run | None:
 
 def _caused(chunks: list[Chunk], at: int) -> _Run | None:
     """Find what someone lets others do: *the owner had it moved*, which says of no thing where it is."""
+    if chunks[at].type != "NP" or type_at(chunks, at + 1) != "TVERB":
+        return None
     types = [type_at(chunks, at + k) for k in range(4)]
     caused = types == ["NP", "TVERB", "NP", "PART"] and chunks[at + 1].value.lemma in ("have", "get")
     if not caused or type_at(chunks, at + 4) not in JOINT_TYPES | {""} or not chunks[at].value.head:
