@@ -70,7 +70,7 @@ class PointCloud:
         for name, shape in wanted.items():
             array = getattr(self, name)
             if array is not None and array.shape != shape:
-                wanted_shape = "(n, 3)" if name == "points" else f"{shape}, as there are {n} points"
+                wanted_shape = "(n, 3)" if name == "points" else f"{shape}, a row for each point"
                 raise CloudError(f"`{name}` must have shape {wanted_shape}, got {array.shape}")
         if self.organised is not None and self.organised[0] * self.organised[1] != n:
             rows, columns = self.organised

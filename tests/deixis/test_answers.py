@@ -170,3 +170,10 @@ def test_exported_functions_return_exported_answers() -> None:
     functions = [member for name in deixis.__all__ if inspect.isfunction(member := getattr(deixis, name))]
     returned = {inspect.signature(function).return_annotation for function in functions}
     assert all(issubclass(getattr(deixis, name), Answer) for name in returned - {"str"})
+
+
+def test_one_of_a_kind_is_said_in_the_singular(answers: dict[str, Answer]) -> None:
+    concept = answers["CountedConcept"]
+    assert isinstance(concept, deixis.CountedConcept)
+    assert next(concept.lines()) == "1 table: formal_dinner-1"
+    assert deixis.Tracking(frames=1).to_text().endswith("1 frame used, 0.00 s.")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, Names, new_figure, require_picture
 
@@ -128,7 +129,7 @@ def _draw(axes: Axes, moment: Moment) -> None:
         side.set_color(QUIET)
     layout = f", laid as '{moment.layout.replace('_', ' ')}'" if moment.layout else ""
     pointed = "; orange: pointed at" if moment.pointed else ""
-    title = f"{moment.at:.1f} s: {len(moment.things)} things{layout}{pointed}"
+    title = f"{moment.at:.1f} s: {count(len(moment.things), 'thing')}{layout}{pointed}"
     axes.set_title(title, fontsize=9, loc="left", color=INK)
     if moment.view is not None and moment.view.exists():
         with np.load(moment.view) as view:

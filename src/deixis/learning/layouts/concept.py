@@ -134,7 +134,7 @@ class CountedConcept(Answer):
         str
             A line for the tables, one for each statement, and one for each optional role.
         """
-        yield f"{len(self.lessons)} tables: {', '.join(self.lessons)}"
+        yield f"{count(len(self.lessons), 'table')}: {', '.join(self.lessons)}"
         yield from map(str, self.statements)
         for role in sorted(self.optional):
             yield f"{role}: on {self.filled[role].held:g} of {self.filled[role].of:g} tables"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import count
 from deixis.report.knowledge.rows import Row
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def tracking_lines(found: Tracking) -> Iterator[str]:
         yield "Nothing was tracked."
     dropped = f", {found.dropped} dropped" if found.dropped else ""
     left_out = f", {found.left_out} left out" if found.left_out else ""
-    yield f"{found.frames} frames used{dropped}{left_out}, {found.seconds:.2f} s."
+    yield f"{count(found.frames, 'frame')} used{dropped}{left_out}, {found.seconds:.2f} s."
     yield from found.notes
 
 
