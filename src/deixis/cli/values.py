@@ -41,7 +41,7 @@ class _Number:
 
 
 class _Path:
-    """Mixin of the type of paths: an empty text, such as that of a variable that is not set, is no path."""
+    """Mixin of the type of paths: an empty text, such as that of a variable that is not set, does not name a path."""
 
     def convert(self: Any, value: Any, parameter: Any, context: Any) -> Any:
         """Return the path that a text stands for; fail if it is empty, which would mean the current folder."""
