@@ -16,7 +16,7 @@ TEXT = "layout supper; fork left of plate; knife right of plate; cup above knife
 
 
 def table(**places: tuple[float, float]) -> deixis.Scene:
-    """A table of labelled things, each with its least corner."""
+    """Return a table of labelled things, each with its least corner."""
     low = np.array([(*place, 0.0) for place in places.values()])
     high = low + np.array([(*SIZES[name], 0.02) for name in places])
     return deixis.Scene.from_boxes(low, high, labels=list(places))
