@@ -20,6 +20,7 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.report.grounding.ground import grounding_lines
+from deixis.testing import assert_grounds
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))
 SCENE = deixis.read_scene(example("place_setting.scene.json"))
@@ -141,7 +142,7 @@ def test_certain_labels_outweigh_facts() -> None:
 @pytest.mark.parametrize(("confidence", "fork"), [(0.1, "q"), (0.9, "p"), (0.0, "q")])
 def test_an_uncertain_label_weighs(confidence: float, fork: str) -> None:
     scene = {"unit": "px", "objects": [box("p", 5, label="fork", confidence=confidence), box("q", 0)]}
-    assert deixis.ground(deixis.read_script(text="fork left of plate"), scene).matches["fork"].perceived == fork
+    assert_grounds("fork left of plate", scene, {"fork": fork})
 
 
 def test_an_uncertain_label_settles_what_facts_leave_open() -> None:

@@ -20,6 +20,7 @@ from deixis.reasoning.grounding.hypotheses.hypotheses import STATED_SIDES
 from deixis.reasoning.grounding.questions.selection import Question
 from deixis.reasoning.grounding.questions.situation import Situation
 from deixis.report.json_answers import grounding_to_dict
+from deixis.testing import assert_grounds
 from deixis.workflows.grounding.dialogue import Ask, Dialogue, Oracle, OracleError
 from deixis.workflows.grounding.ground import GroundingRequest, answer
 
@@ -134,9 +135,9 @@ def test_who_does_not_answer_is_asked_once() -> None:
         ({"ask": [3]}, SettingError, "`ask` must be a mapping, a function or a Dialogue"),
         ({"ask": lambda question, situation: 3}, OracleError, "must be one of its answers, got '3'"),
         ({"meaning": None}, SettingError, "`meaning` must be a Meaning"),
-        ({"time_limit": -1.0}, SettingError, "time limit"),
-        ({"time_limit": "soon"}, SettingError, "time limit"),
-        ({"time_limit": None}, SettingError, "time limit"),
+        ({"time_limit": -1.0}, SettingError, "time_limit"),
+        ({"time_limit": "soon"}, SettingError, "time_limit"),
+        ({"time_limit": None}, SettingError, "time_limit"),
         ({"engine": "exakt"}, package.DeixisError, "there is no engine 'exakt'"),
         ({"ask": {"fork": "o99"}}, OracleError, "'fork' is said to be 'o99', which is not in the scene"),
         ({"ask": lambda question, situation: "perhaps"}, OracleError, "must be one of its answers, got 'perhaps'"),
@@ -191,15 +192,11 @@ def test_a_scene_in_centimetres_without_its_unit_is_noted() -> None:
 
 
 @pytest.mark.parametrize(("viewpoint", "cup"), [([0.6, -2], "west"), ([0.6, 2.1], "east")])
-def test_left_is_as_the_placed_viewer_sees_it(viewpoint: list[float], cup: str, tmp_path: Path) -> None:
-    script = tmp_path / "cups.layout"
-    script.write_text("cup left of plate\n", encoding="utf-8")
+def test_left_is_as_the_placed_viewer_sees_it(viewpoint: list[float], cup: str) -> None:
     boxes = (("west", 0.0, "cup"), ("plate", 0.5, "plate"), ("east", 1.0, "cup"))
     objects = [{"id": i, "min": [x, 0, 0], "max": [x + 0.2, 0.2, 0.1], "label": label} for i, x, label in boxes]
     scene = read_scene({"viewpoint": viewpoint, "objects": objects})
-    found = package.ground(script, scene)
-    assert found.matches["cup"].perceived == cup
-    assert found.scene == scene
+    assert assert_grounds("cup left of plate", scene, {"cup": cup}).scene == scene
 
 
 def test_toys_in_a_text_need_not_have_usual_sizes(tmp_path: Path) -> None:
