@@ -30,7 +30,14 @@ from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.table.colours import TableColours
 from deixis.perception.tracking.table.outline import Outline
 from deixis.perception.tracking.table.reference import GAP, TABLE, UNKNOWN_OWNER, Changes, Reference
-from deixis.perception.tracking.things.completion import BEYOND, MARGIN, FlatThing, floating_parts, revealed_part, stands_behind
+from deixis.perception.tracking.things.completion import (
+    BEYOND,
+    MARGIN,
+    FlatThing,
+    floating_parts,
+    revealed_part,
+    stands_behind,
+)
 from deixis.perception.tracking.things.fitting import Fit, fits
 from deixis.perception.tracking.things.hands import Hands
 from deixis.perception.tracking.things.model import model_of
@@ -763,7 +770,8 @@ class Tracker:
         thing.views += 1
         if moves and seen.needs_two_views:
             both = np.union1d(new, revealed)
-            seen_now = np.where(changed.ravel()[both, None], image.places(both, view.back), reference.points(both, view))
+            is_new = changed.ravel()[both, None]
+            seen_now = np.where(is_new, image.places(both, view.back), reference.points(both, view))
             seen_twice = both[thing.confirms(seen_now) & (~thing.contains(seen_now, BEYOND) | seen.is_carried)]
             new, revealed = np.intersect1d(new, seen_twice), np.intersect1d(revealed, seen_twice)
         reference.owner.ravel()[new] = thing.slot

@@ -16,7 +16,7 @@ from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Ref
 from deixis.perception.tracking.things.pipeline import Pipeline, likeness
 
 FLAT = 0.04
-"""Height in metres below which a thing may have parts that are lost in the noise of the table; that of a spoon is 0.03."""
+"""Height in metres below which a thing may have parts that are lost in the noise of the table; a spoon is 0.03 high."""
 
 MARGIN = 40
 """Distance in pixels from a thing within which its missing parts are looked for."""
@@ -375,9 +375,7 @@ class FlatThing:
         return found
 
     def _leads_to(self, piece: Mask, line: Mask) -> bool:
-        """Return True if a piece lies in a line and has the thing's colour, and nothing but hidden places is between.
-
-        """
+        """Return True if a piece has the thing's colour and lies in a line that nothing seen interrupts."""
         from scipy.ndimage import binary_dilation, binary_propagation
 
         if (line & self._alike)[piece].mean() < MIN_IN_LINE:

@@ -239,7 +239,9 @@ def test_plate_that_comes_into_view_is_not_a_part_of_a_napkin() -> None:
     assert not len(revealed_part(napkin, [plate], on.reference, view()))
 
 
-@pytest.mark.parametrize(("lowest", "colour", "is_part"), [(0.02, STEEL, True), (0.0, STEEL, False), (0.02, BLUE, False)])
+@pytest.mark.parametrize(
+    ("lowest", "colour", "is_part"), [(0.02, STEEL, True), (0.0, STEEL, False), (0.02, BLUE, False)]
+)
 def test_handle_taken_for_a_thing_is_a_part_of_its_cup(
     lowest: float, colour: tuple[int, int, int], is_part: bool
 ) -> None:

@@ -63,5 +63,5 @@ def test_unlikeness_grows_with_the_distance_and_with_the_hue() -> None:
 def test_parts_are_confirmed_by_a_second_view() -> None:
     napkin, end = flat_thing(), np.array([(0.36, 0.2, 0.005), (0.37, 0.2, 0.005)])
     assert not napkin.is_suspected and not napkin.confirms(end).any() and napkin.is_suspected
-    assert not napkin.confirms(end + (0.0, 0.05, 0.0)).any(), "the second view shows something else"
-    assert napkin.confirms(end + (0.0, 0.002, 0.0)).all() and not napkin.is_suspected
+    assert not napkin.confirms(end + np.array([0.0, 0.05, 0.0])).any(), "the second view shows something else"
+    assert napkin.confirms(end + np.array([0.0, 0.002, 0.0])).all() and not napkin.is_suspected
