@@ -768,7 +768,7 @@ class Tracker:
             seen = flat()
         new, revealed = seen.missing_part(), revealed_part(thing, resting, reference, view)
         thing.views += 1
-        if moves and seen.needs_two_views:
+        if seen.is_seen_again or (moves and seen.is_carried):  # what one view shows may be something else
             both = np.union1d(new, revealed)
             is_new = changed.ravel()[both, None]
             seen_now = np.where(is_new, image.places(both, view.back), reference.points(both, view))

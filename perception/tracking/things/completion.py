@@ -147,10 +147,9 @@ def floating_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline
     list of Pipeline
         Smaller things of its colour that came with it, touch it, and do not reach down to the table.
     """
-    top = float(_corners(thing)[:, 2].max())
-    if not thing.first_rest or top < FLAT:
+    if not thing.first_rest or thing.oriented.extents[2] < FLAT:
         return []
-    found = []
+    found, top = [], float(_corners(thing)[:, 2].max())
     for other in others:
         smaller = len(other.cloud) <= MAX_HANDLE * len(thing.cloud) and _corners(other)[:, 2].max() < top + BEYOND
         if not (other.first_rest and other.at == thing.at and smaller):
@@ -258,7 +257,7 @@ class FlatThing:
         owners, counts = np.unique(self._owner[around & (self._owner != UNKNOWN_OWNER)], return_counts=True)
         carrier = int(owners[counts.argmax()]) if len(owners) else TABLE
         self.is_carried = carrier != TABLE
-        unsure = (self._owner == UNKNOWN_OWNER) | ((self._owner == TABLE) & (views > 0))
+        unsure = (self._owner == UNKNOWN_OWNER) | ((self._owner == TABLE) & self.is_seen_again)
         fresh = changed[self._window] & unsure & (carrier == TABLE)
         depth = np.where(fresh, image.depth[self._window], depth)
         shade = np.where(fresh[..., None], image.colour[self._window], shade)
@@ -290,12 +289,8 @@ class FlatThing:
             self._candidate = table & (high | tinted) & (self._height > -4 * self._noise) & low
 
     @property
-    def needs_two_views(self) -> bool:
-        """True if what a moving camera shows of the thing may be something else, so that two views must agree."""
-        return self.is_carried or self._views > 0
-
-    @property
-    def _is_seen_again(self) -> bool:
+    def is_seen_again(self) -> bool:
+        """True if the thing lies on the table and has been completed before, from another view."""
         return not self.is_carried and self._views > 0
 
     def missing_part(self) -> NDArray[np.intp]:
@@ -323,7 +318,7 @@ class FlatThing:
 
         seed = self._seed
         known = seed | self._candidate
-        if self._is_seen_again:  # the reference of a camera that moves has gaps
+        if self.is_seen_again:  # the reference of a camera that moves has gaps
             known = binary_dilation(known, AROUND)
         part: Mask = binary_propagation(seed, AROUND, known) & self._candidate & ~seed
         count = int(part.sum())
@@ -333,7 +328,7 @@ class FlatThing:
         least = max(MIN_MEAN_HEIGHT, 3 * float(self._noise[part].mean()) / np.sqrt(count))
         apart = part & ~binary_dilation(seed, AROUND)
         is_alike = apart.sum() >= MIN_APART and self._alike[apart].mean() > 0.5
-        is_high = not self.is_carried and not self._is_seen_again and self._height[part].mean() >= least
+        is_high = not self.is_carried and not self.is_seen_again and self._height[part].mean() >= least
         return part if is_high or is_alike else np.zeros_like(seed)
 
     def _far_part(self, known: Mask) -> Mask:

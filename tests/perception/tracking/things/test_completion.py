@@ -178,7 +178,7 @@ def test_end_of_a_spoon_on_a_plate_is_found() -> None:
     lay(on, np.s_[28:33, 62:74], STEEL, 2, 0.015)
     lay(on, np.s_[29:32, 30:62], STEEL, 1, 0.015)
     spoon = thing_at(np.s_[29:32, 30:62], 1)
-    assert flat(spoon, on).needs_two_views and not len(flat(spoon, on, views=3).missing_part())
+    assert flat(spoon, on).is_carried and not len(flat(spoon, on, views=3).missing_part())
     added = flat(spoon, on).missing_part()
     rows, columns = np.divmod(added, SHAPE[1])
     assert set(columns.tolist()) == set(range(62, 74)) and set(rows.tolist()) <= set(range(28, 33))
