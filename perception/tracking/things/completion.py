@@ -259,6 +259,7 @@ class FlatThing:
         self.is_carried = carrier != TABLE
         unsure = (self._owner == UNKNOWN_OWNER) | ((self._owner == TABLE) & self.is_seen_again)
         fresh = changed[self._window] & unsure & (carrier == TABLE)
+        self._strange = fresh & (self._owner == TABLE)  # in its line, but not next to it, it may be the edge of another
         depth = np.where(fresh, image.depth[self._window], depth)
         shade = np.where(fresh[..., None], image.colour[self._window], shade)
         table = ((self._owner == carrier) | fresh) & (depth > 0) & np.isfinite(level)
@@ -334,7 +335,7 @@ class FlatThing:
     def _far_part(self, known: Mask) -> Mask:
         from scipy.ndimage import binary_dilation, binary_propagation
 
-        beyond = self._line & self._candidate & self._alike
+        beyond = self._line & self._candidate & self._alike & ~self._strange
         far: Mask = binary_propagation(known, AROUND, known | self._hiding | beyond) & beyond
         far &= ~binary_dilation(known, AROUND, iterations=2)
         return far if far.sum() >= MIN_FAR_PART else np.zeros_like(known)
