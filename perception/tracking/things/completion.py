@@ -351,7 +351,7 @@ class FlatThing:
         Returns
         -------
         list of Pipeline
-            Shorter flat things in its line and of its colour, which came with it and have not moved since.
+            Shorter and smaller flat things in its line and of its colour, which came with it and have not moved since.
         """
         if not self.is_seen:
             return []
@@ -360,7 +360,7 @@ class FlatThing:
             own = self._owner == thing.slot
             together = thing.at == self._thing.at and thing.first_rest and self._thing.first_rest
             shorter = thing.oriented.extents[0] < self._thing.oriented.extents[0]
-            fits = together and shorter and own.any() and thing.oriented.extents[2] < FLAT
+            fits = together and shorter and 0 < own.sum() <= self._seed.sum() and thing.oriented.extents[2] < FLAT
             if not fits or not any(self._leads_to(own, line) for line in (self._line, self._line_to(thing))):
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
