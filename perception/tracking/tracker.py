@@ -30,7 +30,14 @@ from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.table.colours import TableColours
 from deixis.perception.tracking.table.outline import Outline
 from deixis.perception.tracking.table.reference import GAP, TABLE, UNKNOWN_OWNER, Changes, Reference
-from deixis.perception.tracking.things.completion import MARGIN, FlatThing, revealed_part, stands_behind
+from deixis.perception.tracking.things.completion import (
+    BEYOND,
+    MARGIN,
+    FlatThing,
+    floating_parts,
+    revealed_part,
+    stands_behind,
+)
 from deixis.perception.tracking.things.fitting import Fit, fits
 from deixis.perception.tracking.things.hands import Hands
 from deixis.perception.tracking.things.model import model_of
@@ -95,6 +102,9 @@ mean likeness of their colours in any light."""
 
 FILLED = 0.5
 """Least ratio of the sides of two boxes of one thing."""
+
+CONFIRM_AFTER = 0.3
+"""Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
 
 BLIND_FOR = 1.5
 """Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
@@ -725,34 +735,48 @@ class Tracker:
         ready = (
             thing
             for thing in self._things
-            if not thing.active and not thing.completed and thing.seen_at == at
+            if not thing.active and thing.seen_at == at
+            and (not thing.completed or (thing.is_suspected and at - thing.completed_at >= CONFIRM_AFTER))
             and at - max(thing.at, thing.settled_at) >= limits.complete_after and self._is_clear(thing, hand, at)
         )  # fmt: skip
-        thing = next(ready, None)
+        # a moving camera leaves no time to complete all things
+        thing = min(ready, key=lambda each: (not each.is_suspected, each.completed_at), default=None)
         if thing is None:
             return ()
-        thing.completed = True
+        thing.completed, thing.completed_at = True, at
         own = np.flatnonzero(reference.owner == thing.slot)
         if not thing.first_rest and len(own) >= limits.least_pixels:
             taken = (changes.same & (reference.owner != thing.slot)) | hand
             thing.align(image, view, taken, reference.points(own, view), self._noise)
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        changed = ~changes.same & (image.depth > 0) & (at - reference.since >= limits.steady) & ~hand
+        moves = at - self._moved_at < UNSTEADY_FOR
+        differs = ~changes.same
+        if moves:  # at the edges of things, pixels are compared with those beside them
+            differs |= np.linalg.norm(image.colour - reference.colour, axis=-1) > limits.colour
+        changed = differs & (image.depth > 0) & (at - reference.since >= limits.steady) & ~hand
 
         def flat() -> FlatThing:
-            return FlatThing(thing, reference, view, eye, self._noise, limits.colour, image, changed)
+            return FlatThing(thing, reference, view, eye, self._noise, limits.colour, image, changed, thing.views)
 
         seen = flat()
-        merged = seen.pieces(other for other in self._things if other is not thing)
+        resting = [other for other in self._things if other is not thing and not other.active]
+        merged = [*seen.pieces(resting), *floating_parts(thing, resting)]
+        resting = [other for other in resting if other not in merged]
         parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
         if merged:
             reference.owner.ravel()[parts] = thing.slot
             seen = flat()
-        new = seen.missing_part()
+        new, revealed = seen.missing_part(), revealed_part(thing, resting, reference, view)
+        thing.views += 1
+        if seen.is_seen_again or (moves and seen.is_carried):  # what one view shows may be something else
+            both = np.union1d(new, revealed)
+            is_new = changed.ravel()[both, None]
+            seen_now = np.where(is_new, image.places(both, view.back), reference.points(both, view))
+            seen_twice = both[thing.confirms(seen_now) & (~thing.contains(seen_now, BEYOND) | seen.is_carried)]
+            new, revealed = np.intersect1d(new, seen_twice), np.intersect1d(revealed, seen_twice)
         reference.owner.ravel()[new] = thing.slot
         reference.give(new[changed.ravel()[new]], thing.slot, image)
-        resting = [other for other in self._things if other is not thing and not other.active]
-        new = np.union1d(np.union1d(new, parts), revealed_part(thing, resting, reference, view))
+        new = np.union1d(np.union1d(new, parts), revealed)
         if len(new):
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]

@@ -15,8 +15,8 @@ from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
 from deixis.perception.tracking.things.pipeline import Pipeline, likeness
 
-FLAT = 0.03
-"""Height in metres below which a thing may have parts that are lost in the noise of the table."""
+FLAT = 0.04
+"""Height in metres below which a thing may have parts that are lost in the noise of the table; a spoon is 0.03 high."""
 
 MARGIN = 40
 """Distance in pixels from a thing within which its missing parts are looked for."""
@@ -32,6 +32,9 @@ MIN_HEIGHT, MIN_MEAN_HEIGHT = 0.0015, 0.0005
 
 MIN_PART, MIN_APART = 12, 4
 """Least numbers of pixels of a part: all, and those that do not touch what is known of the thing."""
+
+MAX_CARRIED_VIEWS = 3
+"""Number of views from which the missing parts of a thing that lies on another one are looked for."""
 
 MIN_FAR_PART = 3
 """Least number of pixels of a part on the other side of something that stands before the thing."""
@@ -58,8 +61,8 @@ STRIP_MARGIN = 0.006
 MIN_IN_LINE = 0.6
 """Least share of the pixels of a piece that lie in the line of a thing and have its colour."""
 
-MAX_PIECE, MAX_LENGTH = 0.8, 0.28
-"""Largest number of pixels of a piece, as a share of those of the thing, and length in metres of both together."""
+MAX_LENGTH = 0.28
+"""Largest length in metres of a thing and a piece of it together."""
 
 MIN_LIFTED, SUPPORT = 0.025, 0.03
 """Height in metres from which a thing seems to float, and the depth below it in which the top of its support is."""
@@ -75,6 +78,13 @@ MIN_HIDDEN = 0.8
 
 BEYOND = 0.005
 """Distance in metres from the box of a thing beyond which a point shows a part of it that was not seen before."""
+
+MAX_HANDLE, MIN_HANDLE_LIKENESS, CONTACT = 0.25, 0.8, 0.006
+"""Largest number of points of a handle as a share of those of its thing, the least likeness of their colours in any
+light, and the largest distance in metres between them."""
+
+LOWEST_SHARE, MIN_FLOATING = 0.05, 0.01
+"""Share of the lowest points of a handle, which may be noise, and the least height in metres of all others."""
 
 Mask = NDArray[np.bool_]
 
@@ -120,6 +130,37 @@ def revealed_part(
             theirs[held] |= other.unlikeness(points[held], tints[held]) < unlike[held]
     new = own[~theirs]
     return new if len(new) >= MIN_PART else new[:0]
+
+
+def floating_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline]:
+    """Return the things that are parts of a high one, such as the handle of a mug that the first look took for a thing.
+
+    Parameters
+    ----------
+    thing
+        Thing at rest.
+    others
+        Other things at rest.
+
+    Returns
+    -------
+    list of Pipeline
+        Smaller things of its colour that came with it, touch it, and do not reach down to the table.
+    """
+    if not thing.first_rest or thing.oriented.extents[2] < FLAT:
+        return []
+    found, top = [], float(_corners(thing)[:, 2].max())
+    for other in others:
+        smaller = len(other.cloud) <= MAX_HANDLE * len(thing.cloud) and _corners(other)[:, 2].max() < top + BEYOND
+        if not (other.first_rest and other.at == thing.at and smaller):
+            continue
+        points = other.cloud.points.astype(np.float64) @ other.pose[:3, :3].T + other.pose[:3, 3]
+        floats = np.quantile(points[:, 2], LOWEST_SHARE) > MIN_FLOATING
+        tints = other.cloud.colours
+        alike = tints is not None and thing.likeness(tints.astype(np.float64), np.inf).mean() > MIN_HANDLE_LIKENESS
+        if floats and alike and thing.distances(points).min() < CONTACT:
+            found.append(other)
+    return found
 
 
 def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage, view: TableView) -> bool:
@@ -177,6 +218,9 @@ class FlatThing:
     changed
         Mask (r, c) of the pixels at which the frame has shown something else than the reference for a while. Those
         without an owner may show parts of the thing that came into view; the others may show something new.
+    views
+        Number of views from which the thing has been completed during its present rest. In the first one, all changed
+        pixels of the table may show something new; in later ones, they may show parts of the thing.
     """
 
     def __init__(
@@ -189,14 +233,17 @@ class FlatThing:
         colour: float,
         image: FrameImage,
         changed: Mask,
+        views: int,
     ) -> None:
         from scipy.ndimage import binary_dilation
 
-        self._thing, self._shape = thing, reference.owner.shape
+        self._thing, self._shape, self._views = thing, reference.owner.shape, views
         own = reference.owner == thing.slot
         rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
         self.is_seen = thing.oriented.extents[2] < FLAT and len(rows) > 0
         """False for a thing that is high, or of which no pixel is known: nothing is found around it."""
+        self.is_carried = False
+        """True if it lies on another thing."""
         if not self.is_seen:
             return
         self._corner = max(int(rows[0]) - MARGIN, 0), max(int(columns[0]) - MARGIN, 0)
@@ -209,8 +256,10 @@ class FlatThing:
         around = binary_dilation(self._seed, AROUND, iterations=3) & ~self._seed
         owners, counts = np.unique(self._owner[around & (self._owner != UNKNOWN_OWNER)], return_counts=True)
         carrier = int(owners[counts.argmax()]) if len(owners) else TABLE
-        self._is_carried = carrier != TABLE
-        fresh = changed[self._window] & (self._owner == UNKNOWN_OWNER) & (carrier == TABLE)
+        self.is_carried = carrier != TABLE
+        unsure = (self._owner == UNKNOWN_OWNER) | ((self._owner == TABLE) & self.is_seen_again)
+        fresh = changed[self._window] & unsure & (carrier == TABLE)
+        self._strange = fresh & (self._owner == TABLE)  # in its line, but not next to it, it may be the edge of another
         depth = np.where(fresh, image.depth[self._window], depth)
         shade = np.where(fresh[..., None], image.colour[self._window], shade)
         table = ((self._owner == carrier) | fresh) & (depth > 0) & np.isfinite(level)
@@ -233,11 +282,17 @@ class FlatThing:
         self._before = (self._others & (depth < level)) | ((self._owner == UNKNOWN_OWNER) & ~fresh)
         self._line = self._own_line()
         self._hiding = self._line & self._before
-        if self._is_carried:
+        if self.is_carried:
             self._alike = self._candidate = table & self._carried_ends(table, depth, shade, like.reshape(tinted.shape))
         else:
             high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
-            self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
+            low = self._height < _corners(thing)[:, 2].max() + BEYOND
+            self._candidate = table & (high | tinted) & (self._height > -4 * self._noise) & low
+
+    @property
+    def is_seen_again(self) -> bool:
+        """True if the thing lies on the table and has been completed before, from another view."""
+        return not self.is_carried and self._views > 0
 
     def missing_part(self) -> NDArray[np.intp]:
         """Return the pixels of the table, or of what the thing lies on, that are parts of the thing.
@@ -254,7 +309,7 @@ class FlatThing:
             Flat indices of shape (k,), empty if nothing is missing.
         """
         whole = np.zeros(self._shape, np.bool_)
-        if self.is_seen:
+        if self.is_seen and not (self.is_carried and self._views >= MAX_CARRIED_VIEWS):
             near = self._near_part()
             whole[self._window] = near | self._far_part(self._seed | near)
         return np.flatnonzero(whole)
@@ -263,7 +318,10 @@ class FlatThing:
         from scipy.ndimage import binary_dilation, binary_propagation
 
         seed = self._seed
-        part: Mask = binary_propagation(seed, AROUND, seed | self._candidate) & ~seed
+        known = seed | self._candidate
+        if self.is_seen_again:  # the reference of a camera that moves has gaps
+            known = binary_dilation(known, AROUND)
+        part: Mask = binary_propagation(seed, AROUND, known) & self._candidate & ~seed
         count = int(part.sum())
         fits = MIN_PART <= count <= max(2 * int(seed.sum()), 4 * MIN_PART)
         if not fits or (self._others & binary_dilation(part, iterations=2)).any():
@@ -271,13 +329,13 @@ class FlatThing:
         least = max(MIN_MEAN_HEIGHT, 3 * float(self._noise[part].mean()) / np.sqrt(count))
         apart = part & ~binary_dilation(seed, AROUND)
         is_alike = apart.sum() >= MIN_APART and self._alike[apart].mean() > 0.5
-        is_high = not self._is_carried and self._height[part].mean() >= least
+        is_high = not self.is_carried and not self.is_seen_again and self._height[part].mean() >= least
         return part if is_high or is_alike else np.zeros_like(seed)
 
     def _far_part(self, known: Mask) -> Mask:
         from scipy.ndimage import binary_dilation, binary_propagation
 
-        beyond = self._line & self._candidate & self._alike
+        beyond = self._line & self._candidate & self._alike & ~self._strange
         far: Mask = binary_propagation(known, AROUND, known | self._hiding | beyond) & beyond
         far &= ~binary_dilation(known, AROUND, iterations=2)
         return far if far.sum() >= MIN_FAR_PART else np.zeros_like(known)
@@ -293,24 +351,17 @@ class FlatThing:
         Returns
         -------
         list of Pipeline
-            Smaller flat things in its line and of its colour, which came with it and have not moved since.
+            Shorter and smaller flat things in its line and of its colour, which came with it and have not moved since.
         """
-        from scipy.ndimage import binary_dilation, binary_propagation
-
         if not self.is_seen:
             return []
         found = []
         for thing in things:
             own = self._owner == thing.slot
             together = thing.at == self._thing.at and thing.first_rest and self._thing.first_rest
-            fits = together and 0 < own.sum() <= MAX_PIECE * self._seed.sum() and thing.oriented.extents[2] < FLAT
-            if not fits:
-                continue
-            line = self._line if self._is_slender else self._line_to(thing)
-            between = self._seed | (line & (self._before | (self._candidate & self._alike)))
-            reached = binary_propagation(self._seed, AROUND, between | (line & self._others))
-            reached = binary_dilation(reached & between, AROUND, iterations=2)
-            if not (reached & own).any() or (line & self._alike)[own].mean() < MIN_IN_LINE:
+            shorter = thing.oriented.extents[0] < self._thing.oriented.extents[0]
+            fits = together and shorter and 0 < own.sum() <= self._seed.sum() and thing.oriented.extents[2] < FLAT
+            if not fits or not any(self._leads_to(own, line) for line in (self._line, self._line_to(thing))):
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
             other = np.array(thing.oriented.centre) + thing.pose[:3, 3]
@@ -318,6 +369,16 @@ class FlatThing:
             if float(np.linalg.norm(both - other)) + length <= MAX_LENGTH:
                 found.append(thing)
         return found
+
+    def _leads_to(self, piece: Mask, line: Mask) -> bool:
+        """Return True if a piece has the thing's colour and lies in a line that nothing seen interrupts."""
+        from scipy.ndimage import binary_dilation, binary_propagation
+
+        if (line & self._alike)[piece].mean() < MIN_IN_LINE:
+            return False
+        between = self._seed | (line & (self._before | (self._candidate & self._alike)))
+        reached = binary_propagation(self._seed, AROUND, between | (line & self._others))
+        return bool((binary_dilation(reached & between, AROUND, iterations=2) & piece).any())
 
     def _carried_ends(
         self, carrier: Mask, depth: NDArray[np.float32], shade: NDArray[np.float64], like: NDArray[np.float64]
@@ -372,13 +433,18 @@ class FlatThing:
         return self._strip(_corners(self._thing) @ across, across)
 
     def _line_to(self, thing: Pipeline) -> Mask:
-        """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another."""
+        """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another.
+
+        A slender thing must have the other one in its own line, as the handle of a spoon has its bowl.
+        """
         ends = [_corners(each) for each in (self._thing, thing)]
         along = ends[1].mean(axis=0) - ends[0].mean(axis=0)
         along[2] = 0.0
         along /= max(float(np.linalg.norm(along)), 1e-9)
         across, both = np.array([-along[1], along[0], 0.0]), np.concatenate(ends)
-        if np.ptp(both @ along) < MIN_JOINT_SLENDERNESS * np.ptp(both @ across):
+        width = float(np.ptp(both @ across))
+        wider = max(each.oriented.extents[1] for each in (self._thing, thing)) + 2 * STRIP_MARGIN
+        if np.ptp(both @ along) < MIN_JOINT_SLENDERNESS * width or (self._is_slender and width > wider):
             return np.zeros(self._level.shape, np.bool_)
         return self._strip(both @ across, across)
 

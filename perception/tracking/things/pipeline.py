@@ -54,6 +54,9 @@ PLACE_SPREAD, LEAST_LIKENESS = 0.005, 0.02
 a colour, beyond which it may be a part of another colour.
 """
 
+SUSPECTED_VIEWS = 3
+"""Number of views of which the parts that the thing may have are kept until another view confirms them."""
+
 COLOURS = 8
 """Number of colours of a thing with which changed pixels are compared."""
 
@@ -115,7 +118,11 @@ class Pipeline:
     settled_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it last came to rest."""
     completed: bool = field(default=False, init=False)
-    """True if it was completed during its present rest."""
+    """True if it was completed during its present rest, from the present side of the table."""
+    completed_at: float = field(default=-np.inf, init=False)
+    """Time in seconds when it was last completed."""
+    views: int = field(default=0, init=False)
+    """Number of views from which it was completed during its present rest."""
     rest: int = field(default=0, init=False)
     """Number of its present or last rest, which no other rest of any thing has."""
     particles: int = field(default=0, init=False)
@@ -129,6 +136,7 @@ class Pipeline:
         self._carried: list[NDArray[np.float64]] = []
         self._rest = self.pose
         self._velocity = np.zeros(3)
+        self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
 
     def _choose_points(self) -> None:
         """Choose the points of the thing that are compared with frames."""
@@ -357,6 +365,52 @@ class Pipeline:
         """
         return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)], shade)
 
+    @property
+    def is_suspected(self) -> bool:
+        """True if the last view showed parts that the thing may have, and that no other view has confirmed."""
+        return len(self._suspected) > 0 and len(self._suspected[-1]) > 0
+
+    def confirms(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Compare what one view shows of the thing with what the last views showed, and keep the rest for the next.
+
+        Parameters
+        ----------
+        points
+            Points of shape (k, 3) in the table's frame that may be parts of the thing, in metres.
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (k,): True for points that an earlier view showed, too.
+        """
+        from scipy.spatial import cKDTree
+
+        twice = np.zeros(len(points), np.bool_)
+        before = np.concatenate([np.zeros((0, 3)), *self._suspected])
+        if len(points) and len(before):
+            twice = cKDTree(before).query(points)[0] < PLACE_SPREAD
+        self._suspected.append(points[~twice])
+        return twice
+
+    def distances(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how far measured points are from the thing's nearest own points.
+
+        Parameters
+        ----------
+        points
+            Points of shape (k, 3) in the table's frame, in metres.
+
+        Returns
+        -------
+        ndarray
+            Distances of shape (k,) in metres.
+        """
+        from scipy.spatial import cKDTree
+
+        tree = self._tree = self._tree or cKDTree(self.cloud.points)
+        away: NDArray[np.float64] = tree.query((points - self.pose[:3, 3]) @ self.pose[:3, :3])[0]
+        return away
+
     def unlikeness(self, points: NDArray[np.float64], tints: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return how badly measured points agree with the thing's own points, by place and by colour.
 
@@ -372,10 +426,7 @@ class Pipeline:
         ndarray
             Negative logarithms of the likelihood of shape (k,), 0 for a point at a place and of a colour of the thing.
         """
-        from scipy.spatial import cKDTree
-
-        tree = self._tree = self._tree or cKDTree(self.cloud.points)
-        away, _ = tree.query((points - self.pose[:3, 3]) @ self.pose[:3, :3])
+        away = self.distances(points)
         least: NDArray[np.float64] = 0.5 * (away / PLACE_SPREAD) ** 2
         return least - np.log(np.maximum(self.likeness(tints), LEAST_LIKENESS))
 
@@ -570,7 +621,8 @@ class Pipeline:
         if np.linalg.norm(pose[:3, 3] - self._rest[:3, 3]) > 2.5 * self.settings.still:
             self.since = self._places[0][0]
         self.pose, self.active, self._rest = pose, False, pose
-        self.completed = False
+        self.completed, self.views = False, 0
+        self._suspected.clear()
         self.settled_at = self._places[-1][0]
         self._places.clear()
         self._filter.reset(pose)

@@ -10,7 +10,7 @@ from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, table_view
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
-from deixis.perception.tracking.things.completion import FlatThing, revealed_part, stands_behind
+from deixis.perception.tracking.things.completion import FlatThing, floating_parts, revealed_part, stands_behind
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 SHAPE = 60, 120
@@ -66,12 +66,12 @@ def thing_at(pixels: tuple[slice, slice], slot: int, colour: tuple[int, int, int
     return Pipeline(f"t{slot}", slot, cloud, np.array([length, width, 0.01]) / 2, box, pose, 0.0, TrackingSettings())
 
 
-def flat(thing: Pipeline, on: Table, now: Table | None = None) -> FlatThing:
-    """Return a thing on a table, of which a frame shows what is there now."""
+def flat(thing: Pipeline, on: Table, now: Table | None = None, views: int = 0) -> FlatThing:
+    """Return a thing on a table, of which a frame shows what is there now, and which was seen from some views."""
     seen = now or on
     image = FrameImage(np.zeros((*SHAPE, 3), np.float32), seen.depth, seen.colour, OPTICS)
     changed = (seen.colour != on.colour).any(axis=2)
-    return FlatThing(thing, on.reference, view(), 1.0, 0.0015, 40.0, image, changed)
+    return FlatThing(thing, on.reference, view(), 1.0, 0.0015, 40.0, image, changed, views)
 
 
 def half_hidden_knife(end: tuple[int, int, int], row: int = 29) -> tuple[Table, Pipeline]:
@@ -124,6 +124,16 @@ def test_pieces_of_one_thing_are_found(is_hidden: bool) -> None:
     assert flat(tines, on).pieces([handle]) == [], "the larger piece is the thing"
 
 
+@pytest.mark.parametrize(("rows", "is_piece"), [(np.s_[26:35], True), (np.s_[32:41], False)])
+def test_bowl_of_a_spoon_is_in_line_with_its_handle(rows: slice, is_piece: bool) -> None:
+    on, end = table(), (rows, np.s_[50:60])
+    lay(on, np.s_[29:32, 20:50], STEEL, 1)
+    lay(on, end, STEEL, 2)
+    handle, bowl = thing_at(np.s_[29:32, 20:50], 1), thing_at(end, 2)
+    handle.oriented = OrientedBox((0.0, 0.0, 0.0), 0.0, (*handle.oriented.extents[:2], 0.032))
+    assert flat(handle, on).pieces([bowl]) == ([bowl] if is_piece else [])
+
+
 def test_short_ends_of_one_thing_are_joined_behind_another() -> None:
     on = table()
     tip, handle = np.s_[29:32, 42:45], np.s_[29:32, 61:66]
@@ -150,13 +160,26 @@ def test_pieces_are_joined_by_their_middle_that_comes_into_view() -> None:
     assert set((middle % SHAPE[1]).tolist()) == set(range(45, 61))
 
 
+@pytest.mark.parametrize(("height", "found"), [(0.005, 30), (0.1, 0)])
+def test_end_that_a_moving_camera_reveals_is_a_part(height: float, found: int) -> None:
+    on, now = table(), table()
+    lay(on, np.s_[29:32, 20:50], STEEL, 1)
+    lay(now, np.s_[29:32, 20:50], STEEL, 1)
+    lay(now, np.s_[29:32, 51:61], STEEL, TABLE, height)  # behind a gap of one pixel
+    knife = thing_at(np.s_[29:32, 20:50], 1)
+    assert not len(flat(knife, on, now).missing_part()), "something new may lie there"
+    assert len(flat(knife, on, now, views=1).missing_part()) == found
+
+
 def test_end_of_a_spoon_on_a_plate_is_found() -> None:
     on = table()
     lay(on, np.s_[10:50, 10:110], WHITE, 2, 0.015)
     lay(on, np.s_[10:50, 70:76], SHADED, 2, 0.015)  # the wall of the plate
     lay(on, np.s_[28:33, 62:74], STEEL, 2, 0.015)
     lay(on, np.s_[29:32, 30:62], STEEL, 1, 0.015)
-    added = flat(thing_at(np.s_[29:32, 30:62], 1), on).missing_part()
+    spoon = thing_at(np.s_[29:32, 30:62], 1)
+    assert flat(spoon, on).is_carried and not len(flat(spoon, on, views=3).missing_part())
+    added = flat(spoon, on).missing_part()
     rows, columns = np.divmod(added, SHAPE[1])
     assert set(columns.tolist()) == set(range(62, 74)) and set(rows.tolist()) <= set(range(28, 33))
 
@@ -214,6 +237,28 @@ def test_plate_that_comes_into_view_is_not_a_part_of_a_napkin() -> None:
     on.owner[25:40, 45:50] = 1  # of the plate, but within the margin of the napkin's box
     assert len(revealed_part(napkin, [], on.reference, view()))
     assert not len(revealed_part(napkin, [plate], on.reference, view()))
+
+
+@pytest.mark.parametrize(
+    ("lowest", "colour", "is_part"), [(0.02, STEEL, True), (0.0, STEEL, False), (0.02, BLUE, False)]
+)
+def test_handle_taken_for_a_thing_is_a_part_of_its_cup(
+    lowest: float, colour: tuple[int, int, int], is_part: bool
+) -> None:
+    z = np.arange(0.0, 0.08, 0.002)
+    angle = np.linspace(0, 2 * np.pi, 100)
+    body = np.array([(0.04 * np.cos(a), 0.04 * np.sin(a), h) for a in angle for h in z])
+    ear = np.array([(x, 0.0, h) for x in np.arange(0.042, 0.07, 0.002) for h in z if lowest <= h < 0.07])
+    cup, handle = (
+        Pipeline(
+            f"t{slot}", slot, PointCloud(points.astype(np.float32), np.full((len(points), 3), tint, np.uint8)),
+            np.array([0.04, 0.04, 0.04]), OrientedBox((0.0, 0.0, 0.04), 0.0, (0.08, 0.08, top)), np.eye(4), 0.0,
+            TrackingSettings(),
+        )
+        for slot, points, tint, top in ((1, body, STEEL, 0.08), (2, ear, colour, 0.07))
+    )  # fmt: skip
+    assert floating_parts(cup, [handle]) == ([handle] if is_part else [])
+    assert floating_parts(handle, [cup]) == []
 
 
 @pytest.mark.parametrize(("yaw", "half"), [(0.0, (0.058, 0.04)), (0.5, (0.054, 0.04))])

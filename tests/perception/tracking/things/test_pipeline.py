@@ -17,6 +17,16 @@ WOOD, RED = (140, 105, 73), (130, 40, 50)
 NAPKIN = np.s_[40:80, 50:110]
 
 
+def flat_thing() -> Pipeline:
+    """Return a red thing of 10 cm by 10 cm by 1 cm."""
+    points = np.random.default_rng(1).uniform(-0.05, 0.05, (2000, 3)) * (1, 1, 0.1)
+    cloud = PointCloud(points.astype(np.float32), np.tile(np.array(RED, np.uint8), (len(points), 1)))
+    pose = np.eye(4)
+    pose[:3, 3] = 0.3, 0.2, 0.005
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.1, 0.1, 0.01))
+    return Pipeline("t1", 1, cloud, np.array([0.05, 0.05, 0.005]), box, pose, 0.0, TrackingSettings())
+
+
 def test_pose_at_rest_is_that_of_all_pixels_of_the_thing() -> None:
     depth = np.ones(SHAPE, np.float32)
     depth[NAPKIN] = 0.99
@@ -42,13 +52,16 @@ def test_pose_at_rest_is_that_of_all_pixels_of_the_thing() -> None:
 
 
 def test_unlikeness_grows_with_the_distance_and_with_the_hue() -> None:
-    points = np.random.default_rng(1).uniform(-0.05, 0.05, (2000, 3)) * (1, 1, 0.1)
-    cloud = PointCloud(points.astype(np.float32), np.tile(np.array(RED, np.uint8), (len(points), 1)))
-    pose = np.eye(4)
-    pose[:3, 3] = 0.3, 0.2, 0.005
-    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.1, 0.1, 0.01))
-    napkin = Pipeline("t1", 1, cloud, np.array([0.05, 0.05, 0.005]), box, pose, 0.0, TrackingSettings())
+    napkin = flat_thing()
+    pose = napkin.pose
     places = pose[:3, 3] + np.array([(0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.055, 0.0, 0.0), (0.07, 0.0, 0.0)])
     own, other, beside, away = napkin.unlikeness(places, np.array([RED, WOOD, RED, RED], np.float64))
     assert own < 0.5 and own < beside < away and away > 6
     assert own + 1 < other < away, "a part may have another colour"
+
+
+def test_parts_are_confirmed_by_a_second_view() -> None:
+    napkin, end = flat_thing(), np.array([(0.36, 0.2, 0.005), (0.37, 0.2, 0.005)])
+    assert not napkin.is_suspected and not napkin.confirms(end).any() and napkin.is_suspected
+    assert not napkin.confirms(end + np.array([0.0, 0.05, 0.0])).any(), "the second view shows something else"
+    assert napkin.confirms(end + np.array([0.0, 0.002, 0.0])).all() and not napkin.is_suspected
