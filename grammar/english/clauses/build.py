@@ -40,6 +40,7 @@ from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SUBSTA
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
+    DEGREES,
     DIRECTION_WORDS,
     NEVER_PLACES,
     NOT_PLACES,
@@ -442,6 +443,9 @@ class Builder(Transformer[Any, Built]):
         if noun.phrase.head.rpartition(" ")[2] in ARRANGEMENTS | CIRCUMSTANCES and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return (Predicate("there", (), span, positive=relator.positive), *extra)
+        if relation == "by" and noun.phrase.owner is None and last_word(noun.phrase.head) in DEGREES:
+            misunderstood(span, f"'{noun.phrase.head}' says how much, not where")
+            return (*noun.phrase.predicates, *extra)  # 'turned by ninety degrees'
         manner = relation == "by" and noun.phrase.head in _MANNERS
         unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
         if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:

@@ -238,14 +238,8 @@ class Relations(Mentions):
                 self._add("on", (subject,), ())
                 if not self.how.positive and not swapped:
                     self._is_not_here(subject)
-            elif subject.role is not Role.SURFACE and relation in ("in_front", "behind") and self._within(relation):
-                self._add("part", (subject,), (), value="far" if relation == "behind" else "near")
             elif subject.role is not Role.SURFACE and not swapped:
                 self._add(relation, (subject,), (), value=other.noun)
-        elif (
-            relation in ("in_front", "behind") and last_word(other.noun) in VESSELS | HOLDERS and self._within(relation)
-        ):
-            self._add("part", (subject,), (other,), value="back" if relation == "behind" else "front")
         elif other.role is Role.SURROUNDING and relation in (
             "pointing",
             "facing",
@@ -371,6 +365,8 @@ class Relations(Mentions):
         part = predicate.part
         if part in ("either", "each", "both"):
             part = None
+        if predicate.relation == "part" and predicate.arguments and not arguments:
+            part = {"back": "far", "front": "near"}.get(part or "", part)  # 'at the back of the table'
         if predicate.relation in ("end", "side") and subject.size == 2 and self._at_each(predicate):
             for leaf, side in zip(subject.leaves(), ("left", "right"), strict=True):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)

@@ -383,6 +383,15 @@ def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[st
         ("The label is stuck to the front. The pen is in the box.", ["inside(pen, box)"]),
         ("The driftwood leans against the jar, its branches reaching to the left.",
          ["leaning(driftwood, jar)", "pointing(branches, 'left')"]),
+        ("The dial is turned by ninety degrees. The pen is in the box.", ["inside(pen, box)"]),
+        ("The shelf is raised by two notches, and the lamp stands by the jug.", ["near(lamp, jug)"]),
+        ("At the end of the hall two benches stand.", ["end(bench_1, hall)", "end(bench_2, hall)"]),
+        ("The key is in locker three, and the pens are in the box.", ["inside(key, locker_three)", "inside(pens, box)"]),
+        ("The fuse is at the back of the clock, and the crank is behind the clock.",
+         ["part(fuse, clock, 'back')", "behind(crank, clock)"]),
+        ("At the back of the van four crates stand in a row: nails, hooks, bolts and rivets.",
+         ["part(nails, van, 'back')", "part(hooks, van, 'back')", "part(bolts, van, 'back')",
+          "part(rivets, van, 'back')", "row(nails, hooks, bolts, rivets)"]),
     ],
 )  # fmt: skip
 def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[str]) -> None:
