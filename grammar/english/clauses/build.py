@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from lark import Transformer, v_args
@@ -355,6 +356,12 @@ class Builder(Transformer[Any, Built]):
                 groups.append((part.value, []))
             else:
                 groups[-1][1].append(part)
+        for (_, before), (_, group) in pairwise(groups):
+            if not (before and before[0] and group and group[0]):
+                continue
+            aim, denied = before[0][0].relation, group[0][0]
+            if aim in ("pointing", "facing") and denied.relation == "at" and not denied.positive:
+                group[0] = (replace(denied, relation=aim), *group[0][1:])  # 'pointing at it, not at me'
         made = [(link, merged(tuple(group), check=False)) for link, group in groups]
         made = _shared(made)
         return tuple(Said(predicates, link == "or", link == "but") for link, predicates in made)

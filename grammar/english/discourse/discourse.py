@@ -43,6 +43,9 @@ from deixis.ontology.graph.claims import PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
 
+HYPOTHETICAL = UNCERTAIN | {"will", "can"}
+"""Modal verbs of clauses about things that need not be there: *crumbs near the fan will burn*."""
+
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
 
 LABEL = re.compile(
@@ -276,6 +279,10 @@ class Discourse(Statements):
             self._count(subject)
             return
         subject = _with_restrictions_of_contents(subject)
+        if modal in HYPOTHETICAL and subject.predicates and _names_any(subject):
+            subject = replace(subject, predicates=())  # 'crumbs near the fan will burn'
+            if not clause.predicates:
+                return
         order = tuple(p for p in subject.predicates if p.relation == "follows")
         if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
             subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
@@ -520,6 +527,13 @@ class Discourse(Statements):
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
             if name is not None:
                 self._add(name, (last,), (), value=where)
+
+
+def _names_any(phrase: NounPhrase) -> bool:
+    """Return True for a phrase that names no certain thing: *a spill*, *crumbs*."""
+    parts = phrase.members or (phrase,)
+    bare = all(p.head and p.owner is None and p.count is None for p in parts)
+    return bare and all(p.determiner in ("a", "an", "any", None) for p in parts)
 
 
 def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:
