@@ -419,6 +419,8 @@ def _turned_clause_follows(chunks: list[Chunk], types: list[str], at: int) -> bo
     i += types[i : i + 1] == ["COMMA"]
     if types[i : i + 1] in (["VERB"], ["BE"]):
         return "NP" in types[i : i + 3]
+    if types[i : i + 2] == ["PUT", "NP"]:
+        return True  # 'and between that and the jug I like to put the tongs'
     if types[i : i + 1] == ["NP"] and types[i + 1 : i + 2] in (["VERB"], ["BE"]) and types[i - 1] == "NP":
         return True  # 'and behind the tent a sledge has been drawn up'
     person = types[i : i + 2] == ["NP", "TVERB"] and chunks[i].value.pronoun in ("me", "you", "we", "they", "someone")

@@ -403,6 +403,11 @@ def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[st
         ("Crumbs near the fan will spoil the dye. The pen is in the box.", ["inside(pen, box)"]),
         ("A spill beside the socket could be fatal. The pen is in the box.", ["inside(pen, box)"]),
         ("The lamp on the box will dazzle the guests.", ["on(lamp, box)"]),
+        ("The crate was next to the door. It has since moved to the corner, where it is warmer.", ["corner(crate)"]),
+        ("The fern has moved from the sill to the drawer.", ["inside(fern, drawer)"]),
+        ("The fern will move to the drawer. The pen is in the box.", ["inside(pen, box)"]),
+        ("Behind the mugs goes the basin, and between that and the jug I like to put the tongs.",
+         ["behind(basin, mugs)", "between(tongs, basin, jug)"]),
     ],
 )  # fmt: skip
 def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[str]) -> None:
