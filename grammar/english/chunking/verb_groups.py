@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.chunking.noun_positions import is_known
-from deixis.grammar.english.chunking.relators import NOUNS_TOO, RelatorChunker
+from deixis.grammar.english.chunking.relators import CLAUSE_ENDS, NOUNS_TOO, RelatorChunker
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, IS_FORMS, MODALS, NEGATIONS, PRONOUNS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
@@ -554,6 +554,9 @@ class VerbChunker(RelatorChunker):
         if previous == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS and norm.endswith("ed"):
             kind = "TVERB" if self.nouns.starts(i + 1) else "VERB"
             return Chunk(kind, at, i + 1, _with(group, norm, "unknown", "past", past=True))
+        ends = self.norms[i + 1] in CLAUSE_ENDS and norm.endswith("ed")
+        if ends and [chunk.type for chunk in self.chunks[-2:]] in (["BUT", "NP"], ["SUB", "NP"]):
+            return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "past", past=True))  # 'but my neck ached'
         if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
             return None
         return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))

@@ -419,6 +419,10 @@ class Relations(Mentions):
         if own is not None and own.pronoun in VIEWER_WORDS and not own.head and predicate.part is None:
             self._pair(subject, predicate.relation, self.references.viewer, False)  # 'the lamp is to my left'
             return
+        contrasted = self._of_the_other(subject, predicate.relation) if predicate.part is None else None
+        if contrasted is not None:
+            self._pair(subject, predicate.relation, contrasted, False)
+            return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         if (
             predicate.part is None
@@ -450,6 +454,18 @@ class Relations(Mentions):
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
             self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _of_the_other(self, subject: Entity, relation: str) -> Entity | None:
+        """Return what the other one is on the other side of: *the box left of the desk … the one to the right*."""
+        for draft in reversed(self.drafts):
+            other = draft.subjects[0].itself
+            if self.how.sentence - draft.how.sentence > 1:
+                return None
+            opposite = draft.relation == OPPOSITES.get(relation) and draft.how.positive and len(draft.subjects) == 1
+            if opposite and other is not subject.itself and other.noun == subject.noun:
+                of_surface = bool(draft.value) and draft.value == self.references.surface_noun
+                return draft.arguments[0] if draft.arguments else self.references.surface if of_surface else None
+        return None
 
     def _hold(self, subject: Entity, held: Entity, words: list[str]) -> None:
         """State what a support or a vessel holds as on or inside it; what another thing is with is near it."""

@@ -408,6 +408,11 @@ def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[st
         ("The fern will move to the drawer. The pen is in the box.", ["inside(pen, box)"]),
         ("Behind the mugs goes the basin, and between that and the jug I like to put the tongs.",
          ["behind(basin, mugs)", "between(tongs, basin, jug)"]),
+        ("I used to have the radio off to one side, but my neck ached. These days it sits on a stand.",
+         ["on(radio, stand)"]),
+        ("Saws wait in the crate to the left of the jug; files go into the one to the right.",
+         ["left(crate_1, jug)", "inside(saws, crate_1)", "right(crate_2, jug)", "inside(files, crate_2)"]),
+        ("Saws wait in the crate; whatever I have used goes into the bin.", ["inside(saws, crate)"]),
     ],
 )  # fmt: skip
 def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[str]) -> None:
