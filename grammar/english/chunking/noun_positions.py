@@ -761,6 +761,9 @@ class NounFinder:
             return True  # 'keep the cam screws in the bag'
         if nouns and form is not None and form.form == "s" and self._counted(at - len(nouns)):
             return not self._nouns.singular(nouns[-1])[1]  # 'on two foam blocks'
+        several = form is not None and form.form == "s" and self._nouns.singular(norm)[1]
+        if several and not nouns and at > 1 and is_adjective(self.norms[at - 1]) and self._counted(at):
+            return True  # 'on two tall stands'
         named = self.words[at].text[:1].isupper() and self.norms[at + 1] == "'s"
         alone = at == 1 and not self._nouns.knows(self.norms[0])
         if nouns and named and (alone or self.words[at - 1].text[:1].islower()):

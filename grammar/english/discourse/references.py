@@ -684,13 +684,16 @@ class References:
         for adjective in phrase.adjectives:
             if adjective.dimension not in ("position", "size", "height", "length", "rank", "colour"):
                 continue
+            latest: Entity | None = None
             for entity in reversed(list(self._known())):
                 words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
                 if not words or entity.group is not None or entity.members or not entity.noun:
                     continue
-                if adjective.word in words:
-                    return self._seen(entity, phrase)
-                return self._new(replace(phrase, head=entity.noun, pronoun=None), entity.role)
+                latest = latest or entity
+                if adjective.word in words and entity.noun == latest.noun:
+                    return self._seen(entity, phrase)  # 'the right panel opposite the left one'
+            if latest is not None:
+                return self._new(replace(phrase, head=latest.noun, pronoun=None), latest.role)
         return None
 
     def _another_one(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
@@ -798,6 +801,15 @@ class References:
         many = before is not None and before.role is Role.THING and bool(before.itself.members or before.plural)
         if many and relation is None and not both:
             return before  # 'the nuts must not be next to the cereals, nor may they stand …'
+        earlier = last.subject if last is not None and last.sentence == self.sentence - 1 else None
+        goes_on = relation is None and besides is None and not both and earlier is not None
+        if (
+            goes_on
+            and earlier is not None
+            and earlier.role is Role.THING
+            and (earlier.itself.members or earlier.plural)
+        ):
+            return earlier  # 'the lamps are on two stands. They point at the door.'
         for group in reversed(self.named):
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'

@@ -413,6 +413,12 @@ def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[st
         ("Saws wait in the crate to the left of the jug; files go into the one to the right.",
          ["left(crate_1, jug)", "inside(saws, crate_1)", "right(crate_2, jug)", "inside(files, crate_2)"]),
         ("Saws wait in the crate; whatever I have used goes into the bin.", ["inside(saws, crate)"]),
+        ("The speakers are on two tall stands next to the jug. They point at the box.",
+         ["next_to(stand_1, jug)", "next_to(stand_2, jug)", "on(speakers, stand_1)", "on(speakers, stand_2)",
+          "pointing(speakers, box)"]),
+        ("The left panel is in the box. Put the right panel opposite the left one.",
+         ["inside(left_panel, box)", "opposite(right_panel, left_panel)"]),
+        ("Cover the bowl so that nobody sits in the salad. The salad is in the bowl.", ["inside(salad, bowl)"]),
     ],
 )  # fmt: skip
 def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[str]) -> None:
