@@ -140,6 +140,8 @@ def _cuts(
         return complete or "AND" in kinds
     if following == "NP":
         return _subject_follows(chunks, types, start, at, end, kinds, complete)
+    if following == "ADV" and types[end + 1 : end + 2] == ["THERE"] and "AND" in kinds:
+        return True  # 'on the left a cup, on the right a jug, and in between there is a pot'
     if following == "MEASURE" and complete and "AND" in kinds:
         return _inversion_follows(types, end)  # 'and 10 cm behind it a bottle'
     if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(chunks, types, end):

@@ -817,7 +817,7 @@ class References:
         several = first is not None and first is not besides and (first.plural or first.size > 1)
         if first is not None and relation == "between" and several and first.role is Role.THING:
             return first  # 'the curtains were drawn, yet a glove was caught between them'
-        if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
+        if relation == "between" and (two := self.last_two_subjects(besides)) is not None:
             return two
         restrictions = [f.subject for f in self.recent[1:] if f.sentence == self.sentence and f.subject is not None]
         for focus in self.recent[:4]:
@@ -831,8 +831,19 @@ class References:
                 return Entity("", members=pair)
         return None
 
-    def _last_two_subjects(self, besides: Entity | None) -> Entity | None:
-        """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*."""
+    def last_two_subjects(self, besides: Entity | None) -> Entity | None:
+        """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*.
+
+        Parameters
+        ----------
+        besides
+            Entity that is not meant.
+
+        Returns
+        -------
+        Entity or None
+            Group of the two; None if the last two clauses are not of one sentence, or have no such subjects.
+        """
         last = [f for f in self.recent[:3] if f.subject is not None and f.subject is not besides][:2]
         if len(last) < 2 or last[0].sentence != last[1].sentence:
             return None
