@@ -172,9 +172,9 @@ class JointChunker(VerbChunker):
             return Chunk("NP", at, at + 2, NounPhrase(span, pronoun="someone"))  # 'in front of whoever leads'
         if norm in ("whatever", "whichever") and not previous and "," in self.norms[at + 2 : at + 8]:
             return Chunk("SUB", at, at + 1, norm)  # 'whatever she says, the box is under the chair'
-        if norm in ("whatever", "whichever") and (end := self._end_of_free_relative(at + 1)) is not None:
-            span = self.words[at].start, self.words[end - 1].end
-            return Chunk("NP", at, end, NounPhrase(span, pronoun=norm))  # 'whatever I have used goes into it'
+        if norm in ("whatever", "whichever") and (last := self._end_of_free_relative(at + 1)) is not None:
+            span = self.words[at].start, self.words[last - 1].end
+            return Chunk("NP", at, last, NounPhrase(span, pronoun=norm))  # 'whatever I have used goes into it'
         if norm in _WHOEVER:
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:

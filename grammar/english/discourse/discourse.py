@@ -521,6 +521,11 @@ class Discourse(Statements):
         begins = clause.span[0] == self.references.start and clause.mood is Mood.STATEMENT
         if begins and any(p.relation == "part" and p.arguments and p.part in ("front", "back") for p in predicates):
             return True  # 'the handle goes on the front of the drawer'
+        before = self.references.recent[0] if self.references.recent else None
+        listed = before is not None and before.sentence == self.references.sentence and before.relation is not None
+        placed = [p.relation for p in predicates if p.arguments and p.relation in ("inside", "on")]
+        if listed and before is not None and before.relation in placed and subject.plural:
+            return True  # 'the pegs are in the upper drawer, the necks in the lower'
         places = any(p.arguments and p.relation in ("inside", "on", "under", "behind", "next_to") for p in predicates)
         return begins and places and subject.plural and subject.determiner is None and not subject.adjectives
 

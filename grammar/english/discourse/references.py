@@ -624,6 +624,13 @@ class References:
                     return self._seen(entity, phrase)
         if group is None and (contrasted := self._contrasted(phrase)) is not None:
             return contrasted
+        ordered = phrase.adjectives and all(a.dimension in ("rank", "position", "height") for a in phrase.adjectives)
+        alone = phrase.pronoun is None and phrase.determiner == "the" and not phrase.plural and phrase.of is None
+        if group is None and ordered and alone and relation in ("inside", "on") and besides is not None:
+            beside = next((f.others[-1] for f in self.recent[:1] if f.relation == relation and f.others), None)
+            told = beside is not None and bool(beside.noun) and not beside.members and beside.group is None
+            if beside is not None and told and any(d in ("position", "height", "rank") for d, _ in beside.adjectives):
+                return self._new(replace(phrase, head=beside.noun), beside.role)  # 'in the top drawer, … in the second'
         if group is None and not phrase.adjectives and relation in ("inside", "on", "under"):
             another = self._another_one(phrase, besides, relation)
             if another is not None:

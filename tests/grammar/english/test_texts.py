@@ -423,6 +423,11 @@ def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[st
         ("On the left stands a cup, on the right a jug, and in between there is a pot.",
          ["part(cup, 'left')", "part(jug, 'right')", "between(pot, cup, jug)"]),
         ("The cup is on the box. In between there is a pot.", ["on(cup, box)"]),
+        ("Pens are in the top drawer, clips in the second, and spare cords in a basket on the box.",
+         ["inside(pens, drawer_1)", "inside(clips, drawer_2)", "on(basket, box)", "inside(spare_cords, basket)"]),
+        ("The pegs are in the upper drawer, the necks in the lower.",
+         ["inside(pegs, drawer_1)", "inside(necks, drawer_2)"]),
+        ("The pen is in the box. The cup is in the second.", ["inside(pen, box)"]),
     ],
 )  # fmt: skip
 def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[str]) -> None:
