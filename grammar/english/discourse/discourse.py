@@ -66,7 +66,7 @@ CONTRARY = re.compile(r"\b(?:but|instead|actually|yet|however|in fact)\b")
 MAX_BETWEEN_CLAUSES = 40
 """Number of characters between two clauses that are contrasted."""
 
-_NO_PERSON = frozenset({"nobody", "no one", "no-one"})
+_NO_PERSON = re.compile(r"no(?:body|[ -]one)", re.IGNORECASE)
 """Subjects by which a person, and no thing, is not somewhere."""
 
 ABSENT = frozenset(["missing", "miss", "absent", "gone"])
@@ -441,8 +441,8 @@ class Discourse(Statements):
     def _nothing(self, subject: NounPhrase, clause: Clause) -> None:
         """Read *nothing lies between the boots*, *no stopper was found*."""
         told = any(argument.predicates for p in clause.predicates for argument in p.arguments)
-        if self._words(subject).casefold() in _NO_PERSON and not told:
-            return  # 'so that nobody sits in the salad'
+        if _NO_PERSON.fullmatch(self._words(subject)) and not told:
+            return  # 'so that no one sits in the salad'
         predicates = tuple(p for p in clause.predicates if p.relation != "there")  # 'anywhere near it'
         if not predicates:
             for phrase in subject.members or (subject,):

@@ -418,7 +418,7 @@ def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[st
           "pointing(speakers, box)"]),
         ("The left panel is in the box. Put the right panel opposite the left one.",
          ["inside(left_panel, box)", "opposite(right_panel, left_panel)"]),
-        ("Cover the bowl so that nobody sits in the salad. The salad is in the bowl.", ["inside(salad, bowl)"]),
+        ("Cover the bowl so that no one sits in the salad. The salad is in the bowl.", ["inside(salad, bowl)"]),
         ("The hose is coiled up inside the bucket.", ["inside(hose, bucket)"]),
         ("On the left stands a cup, on the right a jug, and in between there is a pot.",
          ["part(cup, 'left')", "part(jug, 'right')", "between(pot, cup, jug)"]),
