@@ -191,7 +191,8 @@ def _parsed(
             for i, segment in enumerate(parts):
                 following = parts[i + 1] if i + 1 < len(parts) else None
                 assembly.opens_list = following is not None and following.link == ":"
-                assembly.leads = following is not None and following.link == "," and following.chunks[0].type == "PUT"
+                commanded = following is not None and following.chunks[0].type == "PUT"
+                assembly.leads = commanded and following is not None and following.link in (",", "")
                 _parse_segment(segment, assembly)
         found = Found((), None, None) if raw.heading or foreign else assembly.finish()
     finally:

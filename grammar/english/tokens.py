@@ -302,8 +302,16 @@ def _deny_contrasts(words: list[Word]) -> None:
         if [word.norm for word in words[i : i + 3]] == ["whether", "or", "not"]:
             del words[i + 1 : i + 3]
     for i in range(len(words) - 2, 0, -1):
-        if words[i].norm == "once" and words[i + 1].norm in PAST_FORMS and words[i - 1].norm not in ("that", "which"):
-            del words[i]  # 'the cup once stood here'
+        helped = words[i - 1].norm in ("has", "have", "had", "'ve") and words[i].norm == "since"
+        if helped and (words[i + 1].norm in verb_forms() or words[i + 1].norm == "been"):
+            del words[i]  # 'it has since moved to the corner'
+            continue
+        form = verb_forms().get(words[i + 1].norm) if words[i].norm == "once" else None
+        did = form is not None and form.form in ("past", "participle") and i + 2 < len(words)
+        did = did and words[i - 1].is_word and words[i + 2].norm in DETERMINERS | POSSESSIVES.keys()
+        past = words[i].norm == "once" and (words[i + 1].norm in PAST_FORMS or did)
+        if past and words[i - 1].norm not in ("that", "which"):
+            del words[i]  # 'the cup once stood here', 'a boy once put the cup there'
     for i in range(1, len(words) - 2):
         if words[i].norm in ("provided", "providing") and words[i - 1].norm == "," and words[i + 1].norm in _SUBJECTS:
             words[i].norm = "if"  # 'right of it, provided it is clean'

@@ -8,7 +8,7 @@ from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
-from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, NEGATIONS, PRONOUNS
+from deixis.grammar.english.vocabulary.function_words import ADVERBS, IS_FORMS, MODALS, NEGATIONS, PRONOUNS
 from deixis.grammar.english.vocabulary.nouns import EVENTS, PEOPLE, last_word
 from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
@@ -172,6 +172,9 @@ class JointChunker(VerbChunker):
             return Chunk("NP", at, at + 2, NounPhrase(span, pronoun="someone"))  # 'in front of whoever leads'
         if norm in ("whatever", "whichever") and not previous and "," in self.norms[at + 2 : at + 8]:
             return Chunk("SUB", at, at + 1, norm)  # 'whatever she says, the box is under the chair'
+        if norm in ("whatever", "whichever") and (last := self._end_of_free_relative(at + 1)) is not None:
+            span = self.words[at].start, self.words[last - 1].end
+            return Chunk("NP", at, last, NounPhrase(span, pronoun=norm))  # 'whatever I have used goes into it'
         if norm in _WHOEVER:
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
@@ -207,6 +210,19 @@ class JointChunker(VerbChunker):
             or norm in MODALS
             or (form is not None and form.form in ("s", "past", "base") and norm not in ("left", "set"))
         )
+
+    def _end_of_free_relative(self, at: int) -> int | None:
+        """Return the end of *whatever I have used* before the verb of which it is the subject."""
+        found = self.nouns.phrase(at, "SUB") if self.nouns.starts(at) or self.norms[at] in PRONOUNS else None
+        i = at if found is None else found[0]
+        while self.norms[i] in IS_FORMS | MODALS.keys() | ADVERBS or self.norms[i] in ("has", "have", "had", "'ve"):
+            i += 1
+        if self.norms[i] not in self._verbs and not self.norms[i].endswith("ed"):
+            return None
+        i += 1
+        form = self._verbs.get(self.norms[i])
+        third = form is not None and form.form == "s" and self._match(i + 1) is not None
+        return i if third or self.norms[i] in IS_FORMS | MODALS.keys() else None
 
     def _is_name(self, at: int) -> bool:
         """Return True for a name without an article, as a person has it."""

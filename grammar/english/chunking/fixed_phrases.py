@@ -162,6 +162,8 @@ class FixedPhraseChunker(JointChunker):
             and self.norms[at + 1] in _UNDER_OR_BEHIND
         ):
             return Chunk("ADVERB", at, at + 1, norm)  # 'it slides in behind the shelf'
+        if norm in ("up", "down") and self._previous() == "PART" and self.norms[at + 1] == "inside":
+            return Chunk("ADVERB", at, at + 1, norm)  # 'coiled up inside the bucket'
         if norm == "set" and self.norms[at + 1] == "up" and self._previous() in FINITE:
             return Chunk("ADVERB", at, at + 2, "set up")
         if norm == "in" and self.norms[at + 1 : at + 3] == ["order", "of"]:

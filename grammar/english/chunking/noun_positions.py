@@ -761,10 +761,15 @@ class NounFinder:
             return True  # 'keep the cam screws in the bag'
         if nouns and form is not None and form.form == "s" and self._counted(at - len(nouns)):
             return not self._nouns.singular(nouns[-1])[1]  # 'on two foam blocks'
+        several = form is not None and form.form == "s" and self._nouns.singular(norm)[1]
+        if several and not nouns and at > 1 and is_adjective(self.norms[at - 1]) and self._counted(at):
+            return True  # 'on two tall stands'
         named = self.words[at].text[:1].isupper() and self.norms[at + 1] == "'s"
         alone = at == 1 and not self._nouns.knows(self.norms[0])
         if nouns and named and (alone or self.words[at - 1].text[:1].islower()):
             return False  # 'I hope Anna's radio is …'
+        if nouns and self._begins_subject(at):
+            return False  # 'at the end of the hall two benches stand'
         if nouns and (norm in ORDINALS or (norm == "cause" and self.norms[at + 1] in PRONOUNS)):
             return False
         if norm[0].isdigit():
@@ -823,6 +828,20 @@ class NounFinder:
         ):
             return self._nounish(at + 1) and norm in _ADJECTIVE_NOUNS
         return self.is_noun(at)
+
+    def _begins_subject(self, at: int) -> bool:
+        """Return True for a number before a plural noun and its verb, in a clause that begins with a place."""
+        if (self.number(at) or 0) <= 1:
+            return False
+        first = at
+        while first > 0 and self.norms[first - 1] not in _CLAUSE_ENDS | {"and", "but"}:
+            first -= 1
+        noun = at + 1
+        while is_adjective(self.norms[noun]) and not self._nouns.knows(self.norms[noun]):
+            noun += 1
+        form = self._verbs.get(self.norms[noun + 1])
+        stands = self.norms[noun + 1] in IS_FORMS or (form is not None and form.form in ("base", "past"))
+        return self.norms[first] in prepositions() and self._nouns.singular(self.norms[noun])[1] and stands
 
     def _awaits_verb(self, at: int) -> bool:
         """Return True if the clause has no verb before a place: *the envelope with the card stands between them*."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
-from deixis.grammar.english.chunking.relators import NOUNS_TOO, RelatorChunker
+from deixis.grammar.english.chunking.noun_positions import is_known
+from deixis.grammar.english.chunking.relators import CLAUSE_ENDS, NOUNS_TOO, RelatorChunker
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, IS_FORMS, MODALS, NEGATIONS, PRONOUNS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
@@ -228,6 +229,9 @@ class VerbChunker(RelatorChunker):
         ):
             return Chunk("VERB", at, i + 1, _with(group, norm, "posture", "s"))  # 'behind it rises a goblet'
         if form is None:
+            if helped and group.modal in _ACTING and self._is_unknown_verb(i):
+                found = _with(group, norm, "unknown", "base")  # 'crumbs will spoil the dye'
+                return Chunk("TVERB" if self._takes_object("unknown", i + 1) else "VERB", at, i + 1, found)
             if helped and group.modal is not None:  # 'the cup can', 'you should blarp'
                 return Chunk("BE", at, i, _with(group, "be", "be", "finite"))
             if (
@@ -550,6 +554,9 @@ class VerbChunker(RelatorChunker):
         if previous == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS and norm.endswith("ed"):
             kind = "TVERB" if self.nouns.starts(i + 1) else "VERB"
             return Chunk(kind, at, i + 1, _with(group, norm, "unknown", "past", past=True))
+        ends = self.norms[i + 1] in CLAUSE_ENDS and norm.endswith("ed")
+        if ends and [chunk.type for chunk in self.chunks[-2:]] in (["BUT", "NP"], ["SUB", "NP"]):
+            return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "past", past=True))  # 'but my neck ached'
         if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
             return None
         return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
@@ -601,6 +608,8 @@ class VerbChunker(RelatorChunker):
         if self.norms[at] not in ("can", "may", "will", "might"):
             return True
         form = self._verbs.get(after)
+        if self.norms[at] != "can" and self._previous() == "NP" and self._is_unknown_verb(at + 1):
+            return True
         if (
             self._previous() in ("NP", "REL")
             and self.chunks
@@ -613,6 +622,11 @@ class VerbChunker(RelatorChunker):
             or after in HEDGES
             or (after in ADVERBS and self.norms[at + 2] == "be")
         ) and not (self.norms[at] == "can" and after in ("the", "it", "i") and self._previous() == "NP")
+
+    def _is_unknown_verb(self, at: int) -> bool:
+        """Return True for a word after a modal verb that no table holds, and that can only be a verb there."""
+        norm = self.norms[at]
+        return norm.isalpha() and not norm.endswith(("s", "ed", "ing", "ly")) and not is_known(norm)
 
     def _is_can(self, at: int) -> bool:
         """Return True for a word after *can* that may be a noun: *the can rest*; False for *can stand on it*."""
@@ -660,6 +674,9 @@ _SUBJECTS = word_set("i you we he she they")
 
 _HEDGES_OF_PLACES = word_set("about around roughly approximately approx almost nearly")
 """Hedges that belong to the place or the measure after them, and not to the verb."""
+
+_ACTING = frozenset({"will", "would", "could", "may", "might"})
+"""Modal verbs after which a word that no table holds is a verb."""
 
 _UNREAL = frozenset({"must", "may", "ought", "should", "could", "would", "might"})
 """Modal verbs that, before *have*, say what was not."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from lark import Transformer, v_args
@@ -40,6 +41,7 @@ from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SUBSTA
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
+    DEGREES,
     DIRECTION_WORDS,
     NEVER_PLACES,
     NOT_PLACES,
@@ -354,6 +356,12 @@ class Builder(Transformer[Any, Built]):
                 groups.append((part.value, []))
             else:
                 groups[-1][1].append(part)
+        for (_, before), (_, group) in pairwise(groups):
+            if not (before and before[0] and group and group[0]):
+                continue
+            aim, denied = before[0][0].relation, group[0][0]
+            if aim in ("pointing", "facing") and denied.relation == "at" and not denied.positive:
+                group[0] = (replace(denied, relation=aim), *group[0][1:])  # 'pointing at it, not at me'
         made = [(link, merged(tuple(group), check=False)) for link, group in groups]
         made = _shared(made)
         return tuple(Said(predicates, link == "or", link == "but") for link, predicates in made)
@@ -442,6 +450,9 @@ class Builder(Transformer[Any, Built]):
         if noun.phrase.head.rpartition(" ")[2] in ARRANGEMENTS | CIRCUMSTANCES and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return (Predicate("there", (), span, positive=relator.positive), *extra)
+        if relation == "by" and noun.phrase.owner is None and last_word(noun.phrase.head) in DEGREES:
+            misunderstood(span, f"'{noun.phrase.head}' says how much, not where")
+            return (*noun.phrase.predicates, *extra)  # 'turned by ninety degrees'
         manner = relation == "by" and noun.phrase.head in _MANNERS
         unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
         if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:

@@ -140,6 +140,8 @@ def _cuts(
         return complete or "AND" in kinds
     if following == "NP":
         return _subject_follows(chunks, types, start, at, end, kinds, complete)
+    if following == "ADV" and types[end + 1 : end + 2] == ["THERE"] and "AND" in kinds:
+        return True  # 'on the left a cup, on the right a jug, and in between there is a pot'
     if following == "MEASURE" and complete and "AND" in kinds:
         return _inversion_follows(types, end)  # 'and 10 cm behind it a bottle'
     if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(chunks, types, end):
@@ -419,6 +421,8 @@ def _turned_clause_follows(chunks: list[Chunk], types: list[str], at: int) -> bo
     i += types[i : i + 1] == ["COMMA"]
     if types[i : i + 1] in (["VERB"], ["BE"]):
         return "NP" in types[i : i + 3]
+    if types[i : i + 2] == ["PUT", "NP"]:
+        return True  # 'and between that and the jug I like to put the tongs'
     if types[i : i + 1] == ["NP"] and types[i + 1 : i + 2] in (["VERB"], ["BE"]) and types[i - 1] == "NP":
         return True  # 'and behind the tent a sledge has been drawn up'
     person = types[i : i + 2] == ["NP", "TVERB"] and chunks[i].value.pronoun in ("me", "you", "we", "they", "someone")

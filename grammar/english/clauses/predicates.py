@@ -251,7 +251,14 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
         misunderstood(span, "this does not say whether it is there at all")
         return ()  # 'the cloth does not hang over both ends of the table'
     marker = Predicate(f"~{group.lemma}~{group.kind}", (), span, positive=True)
+    aims = group.kind in ("face", "point")
+    others = [replace(o, predicates=merged(((marker,), o.predicates))) if aims and _denies(o) else o for o in others]
     return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
+
+
+def _denies(said: Said) -> bool:
+    """Return True for a place that begins with *not*: *it points at the door, not at the wall*."""
+    return bool(said.predicates) and not said.predicates[0].positive
 
 
 def with_support(group: VerbGroup, said: tuple[Said, ...]) -> tuple[Said, ...]:

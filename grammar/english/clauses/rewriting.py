@@ -742,12 +742,17 @@ def _with_measures_denied(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *she moved the pen to the drawer* and *it was moved from the desk to the drawer* as *in the drawer*."""
+    """Return *she moved the pen to the drawer* and *it was moved from the desk to the drawer* as *in the drawer*.
+
+    *It has moved to the drawer* is read as *it is in the drawer*.
+    """
     for i, chunk in enumerate(chunks[:-2]):
         active = chunk.type == "TVERB" and chunk.value.lemma in _MOVING and chunks[i + 1].type == "NP"
         passive = chunk.type == "PART" and chunk.value.lemma in _MOVING and type_at(chunks, i - 1) == "BE"
+        gone = chunk.type == "VERB" and chunk.value.lemma in _MOVING and chunk.value.form == "past"
+        gone = gone and not chunk.value.modal and not chunk.value.past  # 'it has moved to the drawer'
         at = i + 1 + active  # of the places
-        if not (active or passive):
+        if not (active or passive or gone):
             continue
         origin = type_at(chunks, at) == "PREP" and chunks[at].value.preposition.relation == "from"
         if origin and [type_at(chunks, at + k) for k in (1, 2)] == ["NP", "PREP"]:
@@ -757,6 +762,8 @@ def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
             noun = last_word(chunks[at + 1].value.head)
             relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
             chunks[at] = replace(chunks[at], value=Relator(Preposition("to", relation)))
+            if gone:
+                chunks[i] = replace(chunk, type="BE", value=replace(chunk.value, lemma="be", kind="be", form="finite"))
             if passive and not chunks[i - 1].value.modal:
                 chunks[i - 1] = replace(chunks[i - 1], value=replace(chunks[i - 1].value, past=False))
     return chunks

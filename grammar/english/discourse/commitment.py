@@ -24,10 +24,11 @@ NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|la
 HABIT = re.compile(
     r"(?<!\bis )(?<!\bare )(?<!\bbe )\b(?:always|usually|often|normally|generally)\s+"
     r"(?:kept|stored|put|placed|had|left(?!\s+of\b)|stood|lay|hung|sat)\b"
-    r"|\b(?:days?|weeks?|months?|years?|hours?)\s+ago\b",
+    r"|\b(?:days?|weeks?|months?|years?|hours?)\s+ago\b"
+    r"|(?<=\w\s)(?<!that\s)(?<!which\s)(?<!who\s)(?<!where\s)once\s+(?:\w+ed|kept|put|had|left(?!\s+of\b)|stood|lay|laid|hung|sat|held|set|stuck|hid)\b",
     re.I,
 )
-"""Words of what was done again and again."""
+"""Words of what was done again and again, or at an earlier time."""
 WHILE_DOING = re.compile(
     r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed)[a-z]+ing\b[^,]*,",
     re.IGNORECASE,

@@ -43,6 +43,9 @@ from deixis.ontology.graph.claims import PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
 
+HYPOTHETICAL = UNCERTAIN | {"will", "can"}
+"""Modal verbs of clauses about things that need not be there: *crumbs near the fan will burn*."""
+
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
 
 LABEL = re.compile(
@@ -62,6 +65,9 @@ CONTRARY = re.compile(r"\b(?:but|instead|actually|yet|however|in fact)\b")
 
 MAX_BETWEEN_CLAUSES = 40
 """Number of characters between two clauses that are contrasted."""
+
+_NO_PERSON = re.compile(r"no(?:body|[ -]one)", re.IGNORECASE)
+"""Subjects by which a person, and no thing, is not somewhere."""
 
 ABSENT = frozenset(["missing", "miss", "absent", "gone"])
 
@@ -276,6 +282,10 @@ class Discourse(Statements):
             self._count(subject)
             return
         subject = _with_restrictions_of_contents(subject)
+        if modal in HYPOTHETICAL and subject.predicates and _names_any(subject):
+            subject = replace(subject, predicates=())  # 'crumbs near the fan will burn'
+            if not clause.predicates:
+                return
         order = tuple(p for p in subject.predicates if p.relation == "follows")
         if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
             subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
@@ -430,6 +440,9 @@ class Discourse(Statements):
 
     def _nothing(self, subject: NounPhrase, clause: Clause) -> None:
         """Read *nothing lies between the boots*, *no stopper was found*."""
+        told = any(argument.predicates for p in clause.predicates for argument in p.arguments)
+        if _NO_PERSON.fullmatch(self._words(subject)) and not told:
+            return  # 'so that no one sits in the salad'
         predicates = tuple(p for p in clause.predicates if p.relation != "there")  # 'anywhere near it'
         if not predicates:
             for phrase in subject.members or (subject,):
@@ -508,6 +521,11 @@ class Discourse(Statements):
         begins = clause.span[0] == self.references.start and clause.mood is Mood.STATEMENT
         if begins and any(p.relation == "part" and p.arguments and p.part in ("front", "back") for p in predicates):
             return True  # 'the handle goes on the front of the drawer'
+        before = self.references.recent[0] if self.references.recent else None
+        listed = before is not None and before.sentence == self.references.sentence and before.relation is not None
+        placed = [p.relation for p in predicates if p.arguments and p.relation in ("inside", "on")]
+        if listed and before is not None and before.relation in placed and subject.plural:
+            return True  # 'the pegs are in the upper drawer, the necks in the lower'
         places = any(p.arguments and p.relation in ("inside", "on", "under", "behind", "next_to") for p in predicates)
         return begins and places and subject.plural and subject.determiner is None and not subject.adjectives
 
@@ -520,6 +538,13 @@ class Discourse(Statements):
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
             if name is not None:
                 self._add(name, (last,), (), value=where)
+
+
+def _names_any(phrase: NounPhrase) -> bool:
+    """Return True for a phrase that names no certain thing: *a spill*, *crumbs*."""
+    parts = phrase.members or (phrase,)
+    bare = all(p.head and p.owner is None and p.count is None for p in parts)
+    return bare and all(p.determiner in ("a", "an", "any", None) for p in parts)
 
 
 def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:

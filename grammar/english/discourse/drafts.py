@@ -156,12 +156,6 @@ class Drafting:
         optional = self.how.optional or uncertain or "optionally" in adverbs
         self.how = replace(self.how, weight=weight, optional=optional, uncertain=self.how.uncertain or uncertain)
 
-    def _within(self, relation: str) -> bool:
-        """Return True if the clause says *at the back of the table*, and not *behind the table*."""
-        words = " ".join(self.text[slice(*self.how.span)].casefold().split())
-        place = "back" if relation == "behind" else "front"
-        return any(f"{preposition} the {place} of" in words for preposition in ("at", "in", "on", "towards", "toward"))
-
     def _at_each(self, predicate: Predicate) -> bool:
         words = self.text[slice(*predicate.span)].casefold().split()
         return predicate.part is None and not {"each", "either", "both"}.isdisjoint(words[:3])

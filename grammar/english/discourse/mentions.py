@@ -253,10 +253,7 @@ class Mentions(Drafting, ABC):
                 self._add("middle", (entity,), (), value=min(places))
                 continue
             self._predicate(entity, predicate, others)
-        relation = next(
-            (p.relation for p in predicates
-             if p.arguments and not (p.relation in ("in_front", "behind") and self._within(p.relation))), None
-        )  # fmt: skip
+        relation = next((p.relation for p in predicates if p.arguments), None)
         if focus:
             last = self.references.recent[0] if self.references.recent else None
             here = last is not None and last.sentence == self.how.sentence and last.subject is not entity

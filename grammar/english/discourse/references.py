@@ -624,6 +624,13 @@ class References:
                     return self._seen(entity, phrase)
         if group is None and (contrasted := self._contrasted(phrase)) is not None:
             return contrasted
+        ordered = phrase.adjectives and all(a.dimension in ("rank", "position", "height") for a in phrase.adjectives)
+        alone = phrase.pronoun is None and phrase.determiner == "the" and not phrase.plural and phrase.of is None
+        if group is None and ordered and alone and relation in ("inside", "on") and besides is not None:
+            beside = next((f.others[-1] for f in self.recent[:1] if f.relation == relation and f.others), None)
+            told = beside is not None and bool(beside.noun) and not beside.members and beside.group is None
+            if beside is not None and told and any(d in ("position", "height", "rank") for d, _ in beside.adjectives):
+                return self._new(replace(phrase, head=beside.noun), beside.role)  # 'in the top drawer, … in the second'
         if group is None and not phrase.adjectives and relation in ("inside", "on", "under"):
             another = self._another_one(phrase, besides, relation)
             if another is not None:
@@ -684,13 +691,16 @@ class References:
         for adjective in phrase.adjectives:
             if adjective.dimension not in ("position", "size", "height", "length", "rank", "colour"):
                 continue
+            latest: Entity | None = None
             for entity in reversed(list(self._known())):
                 words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
                 if not words or entity.group is not None or entity.members or not entity.noun:
                     continue
-                if adjective.word in words:
-                    return self._seen(entity, phrase)
-                return self._new(replace(phrase, head=entity.noun, pronoun=None), entity.role)
+                latest = latest or entity
+                if adjective.word in words and entity.noun == latest.noun:
+                    return self._seen(entity, phrase)  # 'the right panel opposite the left one'
+            if latest is not None:
+                return self._new(replace(phrase, head=latest.noun, pronoun=None), latest.role)
         return None
 
     def _another_one(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
@@ -798,6 +808,15 @@ class References:
         many = before is not None and before.role is Role.THING and bool(before.itself.members or before.plural)
         if many and relation is None and not both:
             return before  # 'the nuts must not be next to the cereals, nor may they stand …'
+        earlier = last.subject if last is not None and last.sentence == self.sentence - 1 else None
+        goes_on = relation is None and besides is None and not both and earlier is not None
+        if (
+            goes_on
+            and earlier is not None
+            and earlier.role is Role.THING
+            and (earlier.itself.members or earlier.plural)
+        ):
+            return earlier  # 'the lamps are on two stands. They point at the door.'
         for group in reversed(self.named):
             if group is not besides and relation != "between" and (group.itself.members or group.plural):
                 return group  # 'next to the trays but not touching them'
@@ -805,7 +824,7 @@ class References:
         several = first is not None and first is not besides and (first.plural or first.size > 1)
         if first is not None and relation == "between" and several and first.role is Role.THING:
             return first  # 'the curtains were drawn, yet a glove was caught between them'
-        if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
+        if relation == "between" and (two := self.last_two_subjects(besides)) is not None:
             return two
         restrictions = [f.subject for f in self.recent[1:] if f.sentence == self.sentence and f.subject is not None]
         for focus in self.recent[:4]:
@@ -819,8 +838,19 @@ class References:
                 return Entity("", members=pair)
         return None
 
-    def _last_two_subjects(self, besides: Entity | None) -> Entity | None:
-        """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*."""
+    def last_two_subjects(self, besides: Entity | None) -> Entity | None:
+        """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*.
+
+        Parameters
+        ----------
+        besides
+            Entity that is not meant.
+
+        Returns
+        -------
+        Entity or None
+            Group of the two; None if the last two clauses are not of one sentence, or have no such subjects.
+        """
         last = [f for f in self.recent[:3] if f.subject is not None and f.subject is not besides][:2]
         if len(last) < 2 or last[0].sentence != last[1].sentence:
             return None

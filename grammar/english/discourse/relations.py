@@ -238,14 +238,8 @@ class Relations(Mentions):
                 self._add("on", (subject,), ())
                 if not self.how.positive and not swapped:
                     self._is_not_here(subject)
-            elif subject.role is not Role.SURFACE and relation in ("in_front", "behind") and self._within(relation):
-                self._add("part", (subject,), (), value="far" if relation == "behind" else "near")
             elif subject.role is not Role.SURFACE and not swapped:
                 self._add(relation, (subject,), (), value=other.noun)
-        elif (
-            relation in ("in_front", "behind") and last_word(other.noun) in VESSELS | HOLDERS and self._within(relation)
-        ):
-            self._add("part", (subject,), (other,), value="back" if relation == "behind" else "front")
         elif other.role is Role.SURROUNDING and relation in (
             "pointing",
             "facing",
@@ -371,6 +365,8 @@ class Relations(Mentions):
         part = predicate.part
         if part in ("either", "each", "both"):
             part = None
+        if predicate.relation == "part" and predicate.arguments and not arguments:
+            part = {"back": "far", "front": "near"}.get(part or "", part)  # 'at the back of the table'
         if predicate.relation in ("end", "side") and subject.size == 2 and self._at_each(predicate):
             for leaf, side in zip(subject.leaves(), ("left", "right"), strict=True):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
@@ -423,6 +419,10 @@ class Relations(Mentions):
         if own is not None and own.pronoun in VIEWER_WORDS and not own.head and predicate.part is None:
             self._pair(subject, predicate.relation, self.references.viewer, False)  # 'the lamp is to my left'
             return
+        contrasted = self._of_the_other(subject, predicate.relation) if predicate.part is None else None
+        if contrasted is not None:
+            self._pair(subject, predicate.relation, contrasted, False)
+            return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         if (
             predicate.part is None
@@ -454,6 +454,18 @@ class Relations(Mentions):
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
             self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _of_the_other(self, subject: Entity, relation: str) -> Entity | None:
+        """Return what the other one is on the other side of: *the box left of the desk … the one to the right*."""
+        for draft in reversed(self.drafts):
+            other = draft.subjects[0].itself
+            if self.how.sentence - draft.how.sentence > 1:
+                return None
+            opposite = draft.relation == OPPOSITES.get(relation) and draft.how.positive and len(draft.subjects) == 1
+            if opposite and other is not subject.itself and other.noun == subject.noun:
+                of_surface = bool(draft.value) and draft.value == self.references.surface_noun
+                return draft.arguments[0] if draft.arguments else self.references.surface if of_surface else None
+        return None
 
     def _hold(self, subject: Entity, held: Entity, words: list[str]) -> None:
         """State what a support or a vessel holds as on or inside it; what another thing is with is near it."""

@@ -97,6 +97,10 @@ class Statements(Relations):
         elif not predicate.arguments and relation == "on" and not predicate.part:
             if "top" in self.text[slice(*predicate.span)].casefold():
                 self._on_top(subject)
+        elif not predicate.arguments and relation == "between":
+            pair = self.references.last_two_subjects(subject)
+            if pair is not None:
+                self._between(subject, [pair])  # 'a cup on the left, a jug on the right, and in between a pot'
         elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far", "around")):
             self._bare_direction(subject, predicate)
         else:

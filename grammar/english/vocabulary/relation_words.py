@@ -17,6 +17,11 @@ CIRCUMSTANCES = word_set(
     " setting settings game games emergency emergencies"
 )
 """Nouns that name no place after *in*, *at*, *as*, *on* and *under*: *in a formal setting*."""
+DEGREES = word_set(
+    "degree percent notch turn half third quarter fraction amount factor multiple shade hair margin width length"
+    " height depth thickness millimetre millimeter centimetre centimeter metre meter inch foot mm cm m"
+)
+"""Nouns after *by* that say how much: *turned by ninety degrees*, *raised by two notches*."""
 NOT_PLACES = word_set(
     "monday tuesday wednesday thursday friday saturday sunday january february march april june july august september"
     " october november december noon midnight morning evening afternoon schedule fire hurry average purpose sale"
@@ -63,8 +68,8 @@ behind: from behind, out from behind, on the far side of, the far side of
 far: far from, far away from, away from, well away from, as far as possible from, as far away as possible from
 near: as close as possible to, as near as possible to
 far: apart from, clear of, well clear of, out of reach of, well back from, back from
-in_front: in front of, before, infront of, ahead of, in the front of, at the front of, in from of, in front
-behind: behind, behind of, in back of, beyond, past, in the back of, at the back of, to the back of, in rear of
+in_front: in front of, before, infront of, ahead of, in from of, in front
+behind: behind, behind of, in back of, beyond, past, to the back of, in rear of
 above: above, over, up above
 below: below
 under: under of
