@@ -40,7 +40,7 @@ def read_text(path: Path, shown: str, lenient: bool = False) -> str:
     try:
         status = path.stat()
         if stat.S_ISDIR(status.st_mode):
-            raise ScriptFileError(f"{shown}: this is a directory; name a file")
+            raise ScriptFileError(f"{shown or '(an empty name)'}: this is a folder; name a file")
         if not stat.S_ISREG(status.st_mode):
             raise ScriptFileError(f"{shown}: this is not a regular file")
         with path.open("rb") as file:

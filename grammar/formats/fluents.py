@@ -72,7 +72,7 @@ def read_fluents(path: str | Path) -> FluentFile:
         If the file cannot be read.
     """
     if Path(path).is_dir():
-        raise FluentFileError(f"{path}: this is a directory, not a file of fluents")
+        raise FluentFileError(f"{path}: this is a folder, not a file of fluents")
     return parse_fluents(read_text(Path(path), str(path)), str(path))
 
 

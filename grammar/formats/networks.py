@@ -80,7 +80,7 @@ def read_networks(path: str | Path, calculi: Sequence[Calculus]) -> tuple[Networ
         If the file cannot be read.
     """
     if Path(path).is_dir():
-        raise IsADirectoryError(21, "this is a directory, not a network file", str(path))
+        raise IsADirectoryError(21, "this is a folder, not a network file", str(path))
     return parse_networks(read_text(Path(path), str(path)), calculi, str(path))
 
 

@@ -117,7 +117,7 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
     path = Path(source)
     try:
         if path.is_dir():
-            raise SceneError(f"{path}: this is a folder; give a .scene.json file")
+            raise SceneError(f"{source or '(an empty name)'}: this is a folder; give a .scene.json file")
         if not path.is_file() and path.exists():
             raise SceneError(f"{path}: not a regular file; give a .scene.json file")
         if path.suffix == ".layout":

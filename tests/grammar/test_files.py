@@ -68,7 +68,7 @@ def test_errors_of_included_files_are_reported(tmp_path: Path) -> None:
         ("link.layout", "'link.layout' is outside the folder of the script"),
         ("a.layout", "'a.layout' includes itself"),
         ("none.layout", "none.layout: there is no such file"),
-        ("sub", "sub: this is a directory; name a file"),
+        ("sub", "sub: this is a folder; name a file"),
         ("", "an include needs a file name"),
         ("x\0y", r"'x\u0000y' is not a valid file name"),
     ],
@@ -117,7 +117,7 @@ def test_wrong_encodings(tmp_path: Path, data: bytes, expected: str) -> None:
 
 def test_unreadable_files(tmp_path: Path) -> None:
     assert message(tmp_path / "none.layout") == "none.layout: there is no such file"
-    with pytest.raises(ScriptFileError, match="this is a directory; name a file"):
+    with pytest.raises(ScriptFileError, match="this is a folder; name a file"):
         read_layout(tmp_path)
     with pytest.raises(OSError, match="regular file"):
         read_layout("/dev/zero")

@@ -148,3 +148,8 @@ def test_any_boxes(tmp_path: Path, seen: list[tuple[float, float, float, float]]
     code, _, err = deixis("ground", example("contradiction.layout"), path, "--engine", engine)
     assert code in ((0, 1) if seen else (1,))  # 1: what was seen is nothing like what was described
     assert err == ""
+
+
+def test_an_empty_name_of_a_file_is_named() -> None:
+    for arguments in (("parse", ""), ("ground", SCRIPT1, "")):
+        assert refused(*arguments).startswith("deixis: (an empty name): this is a folder; ")

@@ -190,7 +190,7 @@ def test_any_json_is_read_or_rejected(data: Any) -> None:
 def test_unreadable_files_are_named(tmp_path: Path) -> None:
     with pytest.raises(ScriptFileError, match="no such file"):
         read_fluents(tmp_path / "missing.json")
-    with pytest.raises(FluentFileError, match="this is a directory"):
+    with pytest.raises(FluentFileError, match="this is a folder"):
         read_fluents(tmp_path)
     (tmp_path / "latin").write_bytes(b'{"origin": "caf\xe9"}')
     with pytest.raises(ScriptFileError, match="line 1 is not UTF-8"):

@@ -159,7 +159,7 @@ def test_a_huge_index_costs_nothing() -> None:
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(ScriptFileError, match="no such file"):
         read_networks(tmp_path / "none.csp", [POINT])
-    with pytest.raises(OSError, match="directory"):
+    with pytest.raises(OSError, match="folder"):
         read_networks(tmp_path, [POINT])
     (tmp_path / "bytes.csp").write_bytes(b"1\n0 1 (\xff)\n.")
     with pytest.raises(ScriptFileError, match="UTF-8"):
