@@ -18,9 +18,9 @@ FLOORS = {
 """Smallest shares of found and of right facts of texts that are harder than the others.
 
 Their authors did not know the reader. It was changed afterwards for those of ``unseen.txt``, ``counters.txt``,
-``rooms.txt``, ``stations.txt``, ``visitors.txt`` and ``crafts.txt``, and not for those of ``venues.txt``. The texts of ``arrivals.txt`` and ``boarders.txt``, and those of
-``mechanics.txt`` and ``galleys.txt``, were written by authors who knew the reader, before any of them was read; it was
-changed for all of them afterwards.
+``rooms.txt``, ``stations.txt``, ``visitors.txt`` and ``crafts.txt``, and not for those of ``venues.txt``. The texts of
+``arrivals.txt`` and ``boarders.txt``, and those of ``mechanics.txt`` and ``galleys.txt``, were written by authors who
+knew the reader, before any of them was read; it was changed for all of them afterwards.
 """
 
 
