@@ -8,10 +8,10 @@ of*). A phrase stands for the term of the claim, its value and its metres. Some 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from deixis.grammar.layout.words import BETWEEN, BOUNDARY, first_word
+from deixis.grammar.layout.words import BETWEEN, BOUNDARY, by_first_word
 from deixis.ontology.graph.claims import COLLECTIVE, PLACES, SUPERLATIVES, Claim
 from deixis.ontology.lexicon.adjectives import adjectives
 from deixis.ontology.relations.relation import ARTICLES
@@ -170,15 +170,7 @@ _CLAIMS_OF = (
 """Patterns of claims, each with the phrases that it begins with; an empty one stands for a number."""
 
 
-def _by_first_word(claims: Iterable[tuple[Iterable[str], str]]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
-    for starts, pattern in claims:
-        for word in dict.fromkeys(map(first_word, starts)):
-            found.setdefault(word, []).append(pattern)
-    return found
-
-
-CLAIM_PATTERNS, CLAIM_OF_PATTERNS = _by_first_word(_CLAIMS), _by_first_word(_CLAIMS_OF)
+CLAIM_PATTERNS, CLAIM_OF_PATTERNS = by_first_word(_CLAIMS), by_first_word(_CLAIMS_OF)
 """Regular expressions of the phrases that no object follows, and of those that objects follow, by first word."""
 
 CLAIM_PATTERN, CLAIM_OF_PATTERN = ("|".join(pattern for _, pattern in claims) for claims in (_CLAIMS, _CLAIMS_OF))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any
@@ -133,16 +133,20 @@ def _build(
     relations: tuple[str, ...], hedges: tuple[str, ...], chain_heads: tuple[str, ...], compounds: tuple[str, ...]
 ) -> Language:
     lark = _parser()
+
+    def phrases(given: Iterable[str]) -> dict[str, list[str]]:
+        return by_first_word(((phrase,), phrase) for phrase in given)
+
     scanner = Scanner(
         lark.terminals,
         {
             "CLAIM": Phrases(CLAIM_PATTERNS, "|".join),
             "CLAIM_OF": Phrases(CLAIM_OF_PATTERNS, "|".join),
-            "HAS": Phrases({word: [HAS_PATTERN] for word in HAS}, "|".join),
-            "RELATION": Phrases(by_first_word(relations), phrase_pattern),
-            "HEDGE": Phrases(by_first_word(hedges), phrase_pattern),
-            "CHAIN": Phrases(by_first_word(chain_heads), lambda heads: phrase_pattern(heads) + r"[ \t]*:"),
-            "COMPOUND": Phrases(by_first_word(compounds), phrase_pattern),
+            "HAS": Phrases(by_first_word([(HAS, HAS_PATTERN)]), "|".join),
+            "RELATION": Phrases(phrases(relations), phrase_pattern),
+            "HEDGE": Phrases(phrases(hedges), phrase_pattern),
+            "CHAIN": Phrases(phrases(chain_heads), lambda heads: phrase_pattern(heads) + r"[ \t]*:"),
+            "COMPOUND": Phrases(phrases(compounds), phrase_pattern),
         },
     )
     split = [phrase.split() for phrase in relations]

@@ -82,27 +82,28 @@ FIRST_WORD = re.compile(r"[^\W\d_]*")
 """Pattern of the letters at the beginning of a phrase, by which it is found: none if it begins with a number."""
 
 
-def by_first_word(phrases: Iterable[str]) -> dict[str, list[str]]:
-    """Return phrases by their first word in small letters.
+def by_first_word(patterns: Iterable[tuple[Iterable[str], str]]) -> dict[str, list[str]]:
+    """Return patterns by the first words, in small letters, of the phrases that they match.
 
     Parameters
     ----------
-    phrases
-        The phrases.
+    patterns
+        Patterns, or phrases that stand for themselves, each after the phrases that it begins with.
 
     Returns
     -------
     dict
-        Phrases by first word.
+        Patterns by first word.
 
     Examples
     --------
-    >>> by_first_word(["left of", "left", "to the right of"])
-    {'left': ['left of', 'left'], 'to': ['to the right of']}
+    >>> by_first_word([(("left", "right"), "(?:left|right) of"), (("left",), "left")])
+    {'left': ['(?:left|right) of', 'left'], 'right': ['(?:left|right) of']}
     """
     found: dict[str, list[str]] = {}
-    for phrase in phrases:
-        found.setdefault(first_word(phrase), []).append(phrase)
+    for starts, pattern in patterns:
+        for word in dict.fromkeys(map(first_word, starts)):
+            found.setdefault(word, []).append(pattern)
     return found
 
 

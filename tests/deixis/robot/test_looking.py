@@ -1,4 +1,4 @@
-"""Where the things of a table belong, as a robot learned it, and the picture of what it concludes."""
+"""Check where a robot says that things belong, and the picture of what it concludes about a table."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def class_shares(room: Room, named: float = NAMED) -> Array:
     for index, names in enumerate(room.names):
         found[: len(names), index] = list(names.values())
     if unknown:
-        rest = np.maximum(1.0 - found.sum(axis=0), 1e-6) * room.unlabelled
+        rest = np.maximum(1.0 - room.named, 1e-6) * room.unlabelled
         found[-2:] = named * rest, (1 - named) * rest
     return found
 
@@ -228,15 +228,14 @@ class Nouns:
         counts as one more object of its class. If no class is known, it is that alone, at most 0.
         """
         usual = self._usual_sizes(noun, room)
-        known = np.array([sum(names.values()) for names in room.names])
-        if not known.any():
+        if not room.named.any():
             return usual
         logs = np.log(_sides(room))
         apart = ((logs[:, None] - logs[None]) ** 2).sum(axis=2)
         alike = np.exp(-apart / (2 * ALIKE_SIZES**2)) + STRAY
         np.fill_diagonal(alike, 0.0)
         called = self.called([noun], room)
-        among_all = np.maximum(alike @ known, STRAY) / known.sum()
+        among_all = np.maximum(alike @ room.named, STRAY) / room.named.sum()
         ratio = (alike @ called / among_all + np.exp(usual / 2)) / (called.sum() + 1)
         result: Array = np.clip(2 * np.log(ratio), *SIZE_RATIOS)
         return result

@@ -120,10 +120,14 @@ class Room:
         return len(self.ids)
 
     @cached_property
+    def without_label(self) -> NDArray[np.bool_]:
+        """True for objects without a label, shape (n,)."""
+        return np.array([label is None for label in self.labels], dtype=np.bool_)
+
+    @cached_property
     def unlabelled(self) -> NDArray[np.bool_]:
         """True for objects without a label that is certain, shape (n,)."""
-        without = np.array([label is None for label in self.labels], dtype=np.bool_)
-        return without | (self.confidences < 1) if len(self.confidences) else without
+        return self.without_label | (self.confidences < 1) if len(self.confidences) else self.without_label
 
     @cached_property
     def names(self) -> tuple[Mapping[str, float], ...]:
@@ -133,6 +137,11 @@ class Room:
             each if label is None else {label: confidence}
             for label, each, confidence in zip(self.labels, self.candidates, sure, strict=True)
         )
+
+    @cached_property
+    def named(self) -> Array:
+        """Probability that the class of each object is one of its names, shape (n,)."""
+        return np.array([sum(names.values()) for names in self.names], dtype=np.float64)
 
     @cached_property
     def centres(self) -> Array:

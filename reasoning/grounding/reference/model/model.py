@@ -287,9 +287,9 @@ class Model:
         """
         anything = not description.noun and (description.anything or room.unlabelled.any())
         groups = (np.arange(len(among)),) if anything else rival_groups(room, among)
-        bare = np.array([label is None for label in room.labels], dtype=np.bool_)
+        bare = room.without_label
         if description.noun and bare.any() and not bare.all():
-            named = self.lexis.called(description.nouns, room) > LIKELY
+            named = self._called(description, room) > LIKELY
             sized = bare & (self._size_fit(description, room) > 0)
             if named[among].any():
                 groups = (*groups, np.flatnonzero((named | sized)[among]))
@@ -396,13 +396,14 @@ class Model:
 
         It is the share of that class among the objects of the scene whose classes are known, drawn to ``NAMED``.
         """
+        if not description.noun or not room.unlabelled.any():
+            return NAMED
+        called = float(self._called(description, room).sum())
+        return (called + NAMED_WEIGHT * NAMED) / (float(room.named.sum()) + NAMED_WEIGHT)
 
-        def share() -> float:
-            called = float(self.lexis.called(description.nouns, room).sum())
-            known = sum(sum(names.values()) for names in room.names)
-            return (called + NAMED_WEIGHT * NAMED) / (known + NAMED_WEIGHT)
-
-        return self._keep(description, "share named", share) if room.unlabelled.any() and description.noun else NAMED
+    def _called(self, description: Description, room: Room) -> Array:
+        """Return the probability that a noun of a description names the class of each object, shape (n,)."""
+        return self._keep(description, "called", lambda: self.lexis.called(description.nouns, room))
 
     def _fit(self, description: Description, room: Room) -> Array:
         """Return how well the nouns of a description fit each object, shape (n,), in [0, 1]."""

@@ -107,7 +107,7 @@ def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_j
     require_ending(out, (".json",), "a file of weights")
     require_writable([out], [descriptions])
     with progress_bar("fitting the weights"):
-        learned = learn_reference(read_text(descriptions).splitlines(), descriptions.parent, strength)
+        learned = learn_reference(read_text(descriptions).split("\n"), descriptions.parent, strength)
     write_reference(learned.model, out, f"Learned from {learned.descriptions} descriptions in {descriptions.name}")
     if as_json:
         print_json(learned_reference_to_dict(learned, str(out)))

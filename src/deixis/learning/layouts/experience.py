@@ -195,7 +195,8 @@ class Experience:
             return None
         length, width, _ = np.exp(self.sizes[role].mean) - SIZE_ERROR
         cosine, sine = self.axes[role].mean if role in self.axes else (1.0, 0.0)
-        along, across = abs(np.cos(np.arctan2(sine, cosine) / 2)), abs(np.sin(np.arctan2(sine, cosine) / 2))
+        direction = np.arctan2(sine, cosine) / 2
+        along, across = abs(np.cos(direction)), abs(np.sin(direction))
         return np.array([length * along + width * across, length * across + width * along])
 
     @classmethod

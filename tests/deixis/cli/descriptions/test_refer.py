@@ -83,6 +83,15 @@ def test_fewer_questions_are_asked_for_less_certainty() -> None:
     assert turns[0] > turns[1]
 
 
+def test_a_line_separator_ends_no_line_of_descriptions(tmp_path: Path) -> None:
+    line = {"text": "the bin\u2028near the door", "scene": str(STUDY), "target": "o99"}
+    (tmp_path / "said.jsonl").write_text(json.dumps(line, ensure_ascii=False), encoding="utf-8")
+    command = ("learn-relation", "--descriptions", tmp_path / "said.jsonl", "-o", tmp_path / "words.json")
+    code, out, err = deixis(*command)
+    assert (code, out) == (2, "")
+    assert "line 1: " in err and "there is no object 'o99'" in err
+
+
 def test_words_learned_from_descriptions_are_used(tmp_path: Path) -> None:
     """Teach that the bin far from the door is near it."""
     lines = [{"text": "the bin near the door", "scene": str(STUDY), "target": target} for target in ("o14", "o99")]
