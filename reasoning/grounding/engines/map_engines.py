@@ -182,7 +182,9 @@ def _answer(
     seen = tuple(None if other is None else other.in_order_of(evidence) for other in engine.seen)
     found = weigh(evidence, assignment, deadline, engine.sides, seen)
     notes += unknown
-    if found is None:
+    # a sum that is estimated from a map that may be far from the best is not evidence against the scene
+    cut_short = found is not None and found.posterior.is_propagated and found.fits < 0.5 and gap > 0
+    if found is None or cut_short:
         late = "time limit reached before the probabilities of the matches were computed"
         return Alignment(name, assignment, matrix, converged, gap == 0, (*notes, late), finished, gap)
     best = found.best

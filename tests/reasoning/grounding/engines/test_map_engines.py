@@ -22,6 +22,7 @@ from deixis.ontology.relations.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.answers.answer import Standing
+from deixis.reasoning.grounding.engines import map_engines
 from deixis.reasoning.grounding.engines.engine import Alignment
 from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
@@ -308,3 +309,15 @@ def test_a_thousand_alike_do_not_list_each_other() -> None:
     found = ground(evidence, engine_named("similarity"))
     assert len(found.interchangeable[0]) == MAX_LISTED_GROUP + 2
     assert all(len(match.alternatives) <= 1 for match in found.matches.values())
+
+
+def test_a_search_that_was_cut_short_is_not_against_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ground with a bad map where the sum over all maps is estimated from the map."""
+    table = generate(60, seed=0)
+    evidence = replace(no_unary_evidence(table.description(), table.scene()), memory_limited=True)
+    bad = np.random.default_rng(0).permutation(table.truth)
+    monkeypatch.setattr(map_engines, "exact", lambda *given: replace(exact(*given), assignment=bad, bound=np.inf))
+    found = ground(evidence, EXACT, Deadline.after(2.0))
+    assert found.fits is None and found.probabilities is Standing.NONE
+    assert {match.perceived for match in found.matches.values()} == {f"o{thing:04}" for thing in bad}
+    assert any("before the probabilities" in note for note in found.notes)
