@@ -146,7 +146,7 @@ def _fluent(data: Any, where: str, scale: float) -> Fluent:
 def _relation(
     data: Any, where: str, scale: float, fluents: Collection[str], points: Collection[str]
 ) -> TemporalRelation:
-    if isinstance(data, dict) and "allen" in data:
+    if isinstance(data, dict) and data.keys() & {"a", "allen", "b"}:
         entry = _object(data, where, ("a", "allen", "b"), ("a", "allen", "b"))
         a, b = (_known(entry[end], f"{where}.{end}", fluents, "fluent") for end in "ab")
         names = _list(entry["allen"], f"{where}.allen")

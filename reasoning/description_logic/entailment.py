@@ -7,10 +7,11 @@ rules and only the classes to HermiT; figures are in ``docs/reference/descriptio
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.axioms import Axioms, split_axioms
 from deixis.reasoning.description_logic.justification import Justification, justify, justify_all
@@ -44,14 +45,14 @@ class LogicEngine(StrEnum):
     PELLET = "pellet"
 
 
-@dataclass(frozen=True)
-class Entailment:
+@dataclass(frozen=True, repr=False)
+class Entailment(Answer):
     """The result of an engine.
 
     ``complete`` is True if all of OWL 2 DL was decided; with the rules alone, ``consistent`` only means that they found
     no contradiction. ``inferred`` is empty for an inconsistent ontology. ``inconsistency`` explains the inconsistency,
     and ``impossible`` each of the first unsatisfiable classes, as far as :func:`explained` found justifications; if it
-    did not find all, ``unexplained`` is the reason.
+    did not find all, ``unexplained`` is the reason. ``labels`` are those of the ontology by term, for sentences.
     """
 
     engine: LogicEngine
@@ -62,6 +63,14 @@ class Entailment:
     inconsistency: tuple[Justification, ...] = ()
     impossible: tuple[Justification, ...] = ()
     unexplained: str | None = None
+    labels: Mapping[str, str] = field(default_factory=dict)
+
+    def summary(self) -> str:
+        """Return the verdict, the engine, and the number of inferred triples."""
+        if not self.consistent:
+            return f"inconsistent ({self.engine})"
+        held = "consistent" if self.complete else "no contradiction found"
+        return f"{held} ({self.engine}); {count(len(self.inferred), 'triple')} inferred"
 
     @property
     def possible(self) -> bool:

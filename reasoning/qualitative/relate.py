@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import Answer, count
 from deixis.errors import GraphError, UnknownTermError
 from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import SettingError, UnknownCalculusError
@@ -143,13 +144,17 @@ def relate(
     return relator(boxes, _Settings(axis, tolerance, reference))
 
 
-@dataclass(frozen=True, eq=False)
-class Related:
+@dataclass(frozen=True, eq=False, repr=False)
+class Related(Answer):
     """The atoms of one calculus between every ordered pair of named things."""
 
     calculus: str
     ids: tuple[str, ...]
     codes: Codes
+
+    def summary(self) -> str:
+        """Return the number of things and the calculus."""
+        return f"{count(len(self.ids), 'thing')} in {self.calculus}"
 
     @property
     def signs(self) -> tuple[str, ...]:

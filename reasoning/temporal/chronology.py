@@ -14,6 +14,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import Answer, count
 from deixis.ontology.relations.allen import Allen, members
 from deixis.reasoning.constraints.difference import ZERO, add_arrays
 from deixis.reasoning.errors import SettingError
@@ -58,15 +59,15 @@ class Window:
             raise SettingError(f"a window must begin before it ends, got {self.begin:g} and {self.end:g}")
 
 
-@dataclass(frozen=True)
-class Chronology:
+@dataclass(frozen=True, repr=False)
+class Chronology(Answer):
     """The implied times and relations of n fluents.
 
     ``spans`` (k, n, 3, 3), int64, holds for each of k cases of the disjunctions and each fluent the minimal distances
     among origin, start and finish, as codes of :mod:`deixis.reasoning.constraints.difference`. ``masks`` (n, n),
     uint16, holds the Allen relations that the row's fluent may have to the column's. If ``exact``, both are as tight as
     possible. Otherwise some disjunctions were ignored: what is certain is still certain, but what is possible may not
-    be.
+    be. Times are in seconds since ``origin``, a description in words; ``file`` is the file that the fluents come from.
     """
 
     fluents: tuple[Fluent, ...]
@@ -74,6 +75,12 @@ class Chronology:
     masks: NDArray[np.uint16]
     status: Status
     exact: bool
+    origin: str = ""
+    file: str = "<fluents>"
+
+    def summary(self) -> str:
+        """Return the number of fluents and the verdict."""
+        return f"{count(len(self.fluents), 'fluent')}: {self.status}"
 
     @cached_property
     def _places(self) -> dict[str, int]:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from deixis.learning.models.words import LearnedWords
     from deixis.learning.views.views import Recognised, Taught
     from deixis.memory.semantic.queries.results import QueryResult
+    from deixis.memory.semantic.validation.by_shapes import ShapesReport
     from deixis.ontology.graph.facts import Fact
     from deixis.ontology.lessons.types import LayoutConcept, Match
     from deixis.ontology.relations.relation import Relation
@@ -37,8 +38,11 @@ if TYPE_CHECKING:
     from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
     from deixis.reasoning.activities.grounding import ActivityGrounding, RecognisedActivity
     from deixis.reasoning.activities.prediction import Prediction
+    from deixis.reasoning.description_logic.entailment import Entailment
     from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
+    from deixis.reasoning.qualitative.relate import Related
+    from deixis.reasoning.temporal.chronology import Chronology
     from deixis.robot.looking import Look
     from deixis.robot.robot import Robot, Told
     from deixis.session import Session
@@ -57,8 +61,13 @@ if TYPE_CHECKING:
     from deixis.workflows.layouts.infer import Inference, infer
     from deixis.workflows.layouts.lint import Lint, lint
     from deixis.workflows.layouts.read import read_script
+    from deixis.workflows.reasoning.reason import reason
+    from deixis.workflows.reasoning.solve import Solved, SolvedNetwork, solve
+    from deixis.workflows.reasoning.time import chronology
+    from deixis.workflows.reasoning.validate import validate
     from deixis.workflows.scenes.perceive import perceive, write_scene
     from deixis.workflows.scenes.point import Shown, point
+    from deixis.workflows.scenes.relate import relate
     from deixis.workflows.scenes.simulate import Simulation, simulate
     from deixis.workflows.scenes.track import Tracking
 
@@ -66,8 +75,10 @@ __version__ = VERSION
 __all__ = [
     "ActivityGrounding",
     "Check",
+    "Chronology",
     "CountedConcept",
     "DeixisError",
+    "Entailment",
     "Fact",
     "Grounding",
     "Imagination",
@@ -88,14 +99,18 @@ __all__ = [
     "Recognised",
     "RecognisedActivity",
     "Reference",
+    "Related",
     "Relation",
     "Retrieval",
     "Robot",
     "Scene",
     "Script",
     "Session",
+    "ShapesReport",
     "Shown",
     "Simulation",
+    "Solved",
+    "SolvedNetwork",
     "Taught",
     "Telling",
     "Told",
@@ -103,6 +118,7 @@ __all__ = [
     "Unlearned",
     "ask",
     "check",
+    "chronology",
     "format_script",
     "ground",
     "habits",
@@ -113,19 +129,24 @@ __all__ = [
     "point",
     "read_scene",
     "read_script",
+    "reason",
     "refer",
+    "relate",
     "retrieve",
     "simulate",
+    "solve",
     "tell",
+    "validate",
     "write_scene",
 ]
 
 _HOMES = {
     "ActivityGrounding": "deixis.reasoning.activities.grounding",
-    "Prediction": "deixis.reasoning.activities.prediction",
     "Check": "deixis.workflows.grounding.check",
+    "Chronology": "deixis.reasoning.temporal.chronology",
     "CountedConcept": "deixis.learning.layouts.concept",
     "DeixisError": "deixis.errors",
+    "Entailment": "deixis.reasoning.description_logic.entailment",
     "Fact": "deixis.ontology.graph.facts",
     "Grounding": "deixis.reasoning.grounding.answers.answer",
     "Imagination": "deixis.workflows.layouts.imagine",
@@ -140,19 +161,24 @@ _HOMES = {
     "PerceivedObject": "deixis.perception.scene",
     "Placements": "deixis.workflows.knowledge.habits",
     "PointCloud": "deixis.perception.clouds.cloud",
+    "Prediction": "deixis.reasoning.activities.prediction",
     "QueryResult": "deixis.memory.semantic.queries.results",
     "Recall": "deixis.workflows.knowledge.recall",
     "Recognised": "deixis.learning.views.views",
     "RecognisedActivity": "deixis.reasoning.activities.grounding",
     "Reference": "deixis.reasoning.grounding.reference.answer",
+    "Related": "deixis.reasoning.qualitative.relate",
     "Relation": "deixis.ontology.relations.relation",
     "Retrieval": "deixis.workflows.grounding.retrieve",
     "Robot": "deixis.robot.robot",
     "Scene": "deixis.perception.scene",
     "Script": "deixis.grammar.script",
     "Session": "deixis.session",
+    "ShapesReport": "deixis.memory.semantic.validation.by_shapes",
     "Shown": "deixis.workflows.scenes.point",
     "Simulation": "deixis.workflows.scenes.simulate",
+    "Solved": "deixis.workflows.reasoning.solve",
+    "SolvedNetwork": "deixis.workflows.reasoning.solve",
     "Taught": "deixis.learning.views.views",
     "Telling": "deixis.workflows.descriptions.telling",
     "Told": "deixis.robot.robot",
@@ -160,6 +186,7 @@ _HOMES = {
     "Unlearned": "deixis.workflows.knowledge.unlearn",
     "ask": "deixis.workflows.grounding.ask",
     "check": "deixis.workflows.grounding.check",
+    "chronology": "deixis.workflows.reasoning.time",
     "format_script": "deixis.grammar.layout.format",
     "ground": "deixis.workflows.grounding.ground",
     "habits": "deixis.workflows.knowledge.habits",
@@ -170,10 +197,14 @@ _HOMES = {
     "point": "deixis.workflows.scenes.point",
     "read_scene": "deixis.perception.formats.scene_json",
     "read_script": "deixis.workflows.layouts.read",
+    "reason": "deixis.workflows.reasoning.reason",
     "refer": "deixis.workflows.descriptions.refer",
+    "relate": "deixis.workflows.scenes.relate",
     "retrieve": "deixis.workflows.grounding.retrieve",
     "simulate": "deixis.workflows.scenes.simulate",
+    "solve": "deixis.workflows.reasoning.solve",
     "tell": "deixis.workflows.descriptions.tell",
+    "validate": "deixis.workflows.reasoning.validate",
     "write_scene": "deixis.workflows.scenes.perceive",
 }
 

@@ -48,6 +48,9 @@ class Clock:
 CLOCK = Clock()
 """Clock of all deadlines of a process."""
 
+LAST_SHARE = 0.1
+"""Share of a time limit that finding the reasons gets where the verdict has used all of it."""
+
 LONGEST = 1_000_000.0
 """Longest time limit in seconds, 11 days; a longer one counts as none, because the system's waits cannot be as long."""
 
@@ -153,6 +156,21 @@ class Deadline:
         if math.isinf(self.at):
             return self
         return type(self)(min(self.at, CLOCK.now() + fraction * self.left))
+
+    def for_reasons(self, time_limit: float) -> Self:
+        """Return the deadline for finding the reasons of a verdict.
+
+        Parameters
+        ----------
+        time_limit
+            Time limit of the verdict in seconds, whose end is this deadline.
+
+        Returns
+        -------
+        Deadline
+            This deadline, or one that leaves :data:`LAST_SHARE` of the limit from now, whichever is later.
+        """
+        return max(self, self.after(LAST_SHARE * time_limit))
 
     def within(self, seconds: float) -> Self:
         """Return this deadline, or one some seconds from now if that is earlier.

@@ -56,6 +56,12 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
         "Lint": deixis.lint("examples/contradiction.layout"),
         "Telling": deixis.tell(SCRIPT),
         "Simulation": deixis.simulate(SCRIPT, seed=7),
+        "Solved": deixis.solve("examples/closed_but_inconsistent.csp", calculus="allen"),
+        "SolvedNetwork": deixis.solve("examples/place_setting.csp", calculus="ra", closure=True).networks[0],
+        "Entailment": deixis.reason("ontology/deixis.ttl", "rl"),
+        "ShapesReport": deixis.validate("ontology/deixis.ttl"),
+        "Chronology": deixis.chronology("examples/serving.fluents.json"),
+        "Related": deixis.relate(SCENE, "cd"),
         "Tracking": deixis.Tracking((thing,), (thing,), frames=2, seconds=0.1),
     }
 
@@ -97,6 +103,12 @@ def test_tables_have_a_row_for_each_thing(answers: dict[str, Answer]) -> None:
     assert [row["state"] for row in rows["Tracking"]] == ["seen", "gone"]
     assert len(rows["LayoutConcept"]) == len(rows["CountedConcept"]) == len(SCRIPT.facts)
     assert {row["verdict"] for row in rows["Check"]} == {"correct", "missing", "misplaced", "extra"}
+    assert [row["verdict"] for row in rows["Solved"]] == ["inconsistent"]
+    assert {row["calculus"] for row in rows["SolvedNetwork"]} == {"ra"}
+    assert len(rows["Related"]) == 12 * 11
+    assert [row["start_to"] for row in rows["Chronology"]][:2] == [5.0, 30.0]
+    assert len(rows["Entailment"]) == len(answers["Entailment"].to_dict()["inferred"])
+    assert rows.pop("ShapesReport") == []
     assert all(len(set(map(tuple, table))) >= 1 for table in rows.values())
 
 

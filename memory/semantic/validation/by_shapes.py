@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import pyoxigraph as ox
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.memory.errors import ShapeResult, ShapesError
@@ -38,13 +39,18 @@ _SPARQL = {ox.NamedNode(f"http://www.w3.org/ns/shacl#{name}") for name in ("sele
 _ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
 
 
-@dataclass(frozen=True)
-class ShapesReport:
+@dataclass(frozen=True, repr=False)
+class ShapesReport(Answer):
     """Result of a validation: conformance, every result (violations first), and the standard report as Turtle."""
 
     conforms: bool
     results: tuple[ShapeResult, ...]
     turtle: str
+
+    def summary(self) -> str:
+        """Return whether the data conforms, and the number of results."""
+        verdict = "conforms" if self.conforms else "does not conform"
+        return f"{count(len(self.results), 'result')}: {verdict}"
 
 
 def validate_by_shapes(

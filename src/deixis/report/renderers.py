@@ -172,6 +172,32 @@ RENDERERS = {
     "QueryResult": Renderer(
         "report.knowledge.rows:query_to_dict", "report.knowledge.rows:query_lines", "report.knowledge.rows:query_rows"
     ),
+    "SolvedNetwork": Renderer(
+        "report.reasoning.solve:solved_to_dict",
+        "report.reasoning.solve:solved_lines",
+        "report.reasoning.solve:network_rows",
+    ),
+    "Solved": Renderer(
+        "report.reasoning.solve:file_to_dict", "report.reasoning.solve:file_lines", "report.reasoning.solve:file_rows"
+    ),
+    "Entailment": Renderer(
+        "report.reasoning.reason:entailment_to_dict",
+        "report.reasoning.reason:entailment_lines",
+        "report.reasoning.reason:entailment_rows",
+    ),
+    "ShapesReport": Renderer(
+        "report.reasoning.validate:shapes_to_dict",
+        "report.reasoning.validate:shapes_lines",
+        "report.reasoning.validate:shapes_rows",
+    ),
+    "Chronology": Renderer(
+        "report.reasoning.time:chronology_to_dict",
+        "report.reasoning.time:chronology_lines",
+        "report.reasoning.time:chronology_rows",
+    ),
+    "Related": Renderer(
+        "report.scenes.relate:related_to_dict", "report.scenes.relate:pair_lines", "report.scenes.relate:related_rows"
+    ),
 }
 """Renderers by the name of the answer's class."""
 

@@ -143,6 +143,7 @@ WRONG = [
     (with_fluent(start={"lower": 0, "upper": 1, "upper_open": 1}), "start.upper_open must be true or false"),
     (with_fluent(start=[5, 6], finish=[1, 5]), "fluents[0]: the fluent 'f1' must start before it finishes"),
     (with_fluent(stop=[1, 5]), "fluents[0]: unknown key 'stop'"),
+    (with_relation({"a": "fetch", "b": "serve"}), "relations[0]: 'allen' is missing"),
     (with_relation(ALLEN | {"a": "fetsch"}), "relations[0].a: there is no fluent 'fetsch'; did you mean 'fetch'?"),
     (with_relation(ALLEN | {"allen": ["befor"]}), "allen[0]: there is no relation 'befor'; did you mean 'before'?"),
     (with_relation(ALLEN | {"allen": []}), "relations[0].allen must have at least one relation"),

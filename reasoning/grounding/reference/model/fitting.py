@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,7 +30,13 @@ class Example:
     target: int
 
 
-def fit(model: Model, examples: Sequence[Example], penalty: float, iterations: int = 60) -> dict[str, Array]:
+def fit(
+    model: Model,
+    examples: Sequence[Example],
+    penalty: float,
+    iterations: int = 60,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[str, Array]:
     """Return the weights that make the described objects most probable.
 
     Parameters
@@ -42,6 +49,8 @@ def fit(model: Model, examples: Sequence[Example], penalty: float, iterations: i
         Squared distance of the weights from the start, in nats per example for a distance of 1.
     iterations
         Maximum number of steps of L-BFGS.
+    progress
+        Called after each step with the number of steps done and their maximum.
 
     Returns
     -------
@@ -69,7 +78,13 @@ def fit(model: Model, examples: Sequence[Example], penalty: float, iterations: i
         slope = np.concatenate([slopes[name] for name in names])
         return total + penalty * float(off @ off), 2 * penalty * off - slope
 
-    found = minimize(loss, start, jac=True, method="L-BFGS-B", options={"maxiter": iterations})
+    steps = itertools.count(1)
+
+    def step(values: Array) -> None:
+        if progress is not None:
+            progress(next(steps), iterations)
+
+    found = minimize(loss, start, jac=True, method="L-BFGS-B", callback=step, options={"maxiter": iterations})
     return dict(zip(names, np.split(found.x, ends), strict=True))
 
 

@@ -106,8 +106,9 @@ def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_j
         raise DeixisError("--descriptions needs a file for the weights; name it with -o FILE.json")
     require_ending(out, (".json",), "a file of weights")
     require_writable([out], [descriptions])
-    with progress_bar("fitting the weights"):
-        learned = learn_reference(read_text(descriptions).split("\n"), descriptions.parent, strength)
+    with progress_bar("fitting the weights") as progress:
+        lines = read_text(descriptions).split("\n")
+        learned = learn_reference(lines, descriptions.parent, strength, progress=progress)
     write_reference(learned.model, out, f"Learned from {learned.descriptions} descriptions in {descriptions.name}")
     if as_json:
         print_json(learned_reference_to_dict(learned, str(out)))

@@ -16,6 +16,7 @@ from deixis.cli.common import (
     print_written,
     require_plot,
 )
+from deixis.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from deixis.ontology.models.relations import RelationModels
@@ -55,7 +56,8 @@ def relation(
     if plot is not None:
         from deixis.plots.relation import plot_relation
 
-        plot_relation(found, known, plot)
+        with progress_bar("drawing"):
+            plot_relation(found, known, plot)
         if not as_json:
             print_written(plot)
 

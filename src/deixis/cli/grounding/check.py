@@ -26,7 +26,7 @@ from deixis.cli.common import (
     tell_of_compiling,
 )
 from deixis.cli.completion import complete_layouts
-from deixis.cli.progress import time_bar
+from deixis.cli.progress import progress_bar, time_bar
 
 
 def check(
@@ -64,7 +64,8 @@ def check(
     if plot is not None:
         from deixis.plots.check import plot_check
 
-        plot_check(checked, plot)
+        with progress_bar("drawing"):
+            plot_check(checked, plot)
     if turtle:
         sys.stdout.write(checked.report)
     elif as_json:

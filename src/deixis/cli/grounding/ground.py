@@ -27,7 +27,7 @@ from deixis.cli.common import (
     tell_of_compiling,
 )
 from deixis.cli.output import StandardInput
-from deixis.cli.progress import time_bar
+from deixis.cli.progress import progress_bar, time_bar
 from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
@@ -100,7 +100,8 @@ def ground(
     if plot is not None:
         from deixis.plots.grounding import plot_grounding
 
-        plot_grounding(found, plot, title=described.title or described.name)
+        with progress_bar("drawing"):
+            plot_grounding(found, plot, title=described.title or described.name)
     if as_json:
         written = grounding_to_dict(found)
         if described.reading is not None:

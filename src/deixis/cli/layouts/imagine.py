@@ -18,7 +18,7 @@ from deixis.cli.common import (
     require_scene_name,
     tell_of_compiling,
 )
-from deixis.cli.progress import time_bar
+from deixis.cli.progress import step_bar, time_bar
 
 if TYPE_CHECKING:
     from deixis.workflows.layouts.imagine import Imagination
@@ -101,7 +101,10 @@ def _write(found: Imagination, scenes: list[Path], pictures: list[Path]) -> None
 
     for table, file in zip(found.tables, scenes, strict=False):
         write_scene(table.scene, file)
-    for table, file in zip(found.tables, pictures, strict=False):
+    if pictures:
         from deixis.plots.imagine import plot_table
 
-        plot_table(table, found.script.ontology.kinds, file, found.script.title or found.script.name)
+        with step_bar(len(pictures), "drawing") as drawn:
+            for table, file in zip(found.tables, pictures, strict=False):
+                plot_table(table, found.script.ontology.kinds, file, found.script.title or found.script.name)
+                drawn("drawing")

@@ -90,10 +90,6 @@ def reason(
     raise typer.Exit(code)
 
 
-LAST_SHARE = 0.1
-"""Share of the time limit that finding the reasons gets where the verdict has used all of it."""
-
-
 def _entail(
     stated: list[Triple],
     engine: EngineChoice,
@@ -105,27 +101,27 @@ def _entail(
     as_json: bool,
 ) -> int:
     """Print the verdict as soon as it is known, then the reasons found in time, then what follows."""
-    from deixis.reasoning.description_logic.entailment import entail, explained
+    from deixis.reasoning.description_logic.entailment import explained
     from deixis.reasoning.description_logic.terms import write_ntriples
-    from deixis.reasoning.description_logic.verbalisation import Words, labels_of
     from deixis.report.reasoning import reason as report
+    from deixis.workflows.reasoning.reason import entailment
 
-    deadline, ntriples, words = Deadline.after(time_limit), write_ntriples(stated), Words(labels_of(stated))
+    deadline = Deadline.after(time_limit)
     with time_bar("reasoning", time_limit):
-        found = entail(ntriples, engine.value, time_limit)
+        found = entailment(stated, engine.value, time_limit)
     if not (turtle or as_json):
-        print_line(report.verdict(found, words))
+        print_line(report.verdict(found))
         sys.stdout.flush()
     if not (verdict or found.possible):
-        last = max(deadline, Deadline.after(LAST_SHARE * time_limit))
+        last = deadline.for_reasons(time_limit)
         with time_bar("finding the reasons", last.left):
-            found = explained(ntriples, found, last, every)
+            found = explained(write_ntriples(stated), found, last, every)
     if turtle:
         _print_turtle(*found.inconsistency, *found.impossible)
     elif as_json:
-        print_json(report.entailment_to_dict(found, words))
+        print_json(found.to_dict())
     elif not verdict:
-        print_lines(report.impossibility_lines(found, words))
+        print_lines(report.impossibility_lines(found))
         print_lines(report.inferred_lines(found, triples))
     return 0 if found.possible else NO
 

@@ -24,7 +24,7 @@ from deixis.cli.completion import complete_calculi
 from deixis.cli.progress import progress_bar
 
 if TYPE_CHECKING:
-    from deixis.workflows.reasoning.solve import SolvedNetwork
+    from deixis.workflows.reasoning.solve import Solved, SolvedNetwork
 
 
 def solve(
@@ -50,8 +50,9 @@ def solve(
     """Decide whether constraint networks are consistent; exit 1 if one is not, 3 if one stays undecided."""
     from deixis.errors import DeixisError
     from deixis.grammar.formats.networks import read_networks
+    from deixis.reasoning.qualitative.networks.search.consistency import Verdict
     from deixis.report.reasoning.solve import reason_lines
-    from deixis.workflows.reasoning.solve import SolveRequest, calculi_named, solve_text
+    from deixis.workflows.reasoning.solve import Solved, SolveRequest, calculi_named, solve_text
 
     if closure and scenario:
         raise DeixisError("--closure and --scenario exclude each other")
@@ -66,14 +67,15 @@ def solve(
     texts = read_networks(network, calculi)
     tell_of_compiling()
     aside = as_json or (out is None and (closure or scenario))  # then a program reads the output
-    solved = []
+    found = []
     with progress_bar("closing") as progress:
         for text in texts:
-            solved.append(solve_text(text, request, progress, _print_nothing if aside else _print_verdict))
+            found.append(solve_text(text, request, progress, _print_nothing if aside else _print_verdict))
             if not aside:
-                print_lines(reason_lines(solved[-1], not verdict))
-    _report(network, solved, out, as_json, aside)
-    raise typer.Exit(_code(solved))
+                print_lines(reason_lines(found[-1], not verdict))
+    solved = Solved(network, tuple(found))
+    _report(solved, out, as_json, aside)
+    raise typer.Exit({Verdict.INCONSISTENT: NO, Verdict.UNDECIDED: UNDECIDED}.get(solved.verdict, 0))
 
 
 def _print_verdict(solved: SolvedNetwork) -> None:
@@ -87,28 +89,19 @@ def _print_nothing(solved: SolvedNetwork) -> None:
     pass
 
 
-def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: bool, aside: bool) -> None:
+def _report(solved: Solved, out: Path | None, as_json: bool, aside: bool) -> None:
     """Print what did not come with the verdicts: JSON, or networks with the findings as comments."""
     from deixis.grammar.formats.networks import network_lines
-    from deixis.report.reasoning.solve import solved_lines, solved_to_dict
+    from deixis.report.reasoning.solve import file_lines
     from deixis.text_files import replace_text
 
-    shown = [line for each in solved if each.shown for line in network_lines(each.shown, each.text.comment)]
+    shown = [line for each in solved.networks if each.shown for line in network_lines(each.shown, each.text.comment)]
     if out is not None:
         replace_text(out, "".join(f"{line}\n" for line in shown))
     if as_json:
-        print_json({"file": file, "networks": [solved_to_dict(each) for each in solved]})
+        print_json(solved.to_dict())
         return
     if aside:
-        lines = [line for each in solved for line in solved_lines(each)]
+        lines = file_lines(solved)
         print_lines([f"# {line}" for line in lines] + shown if shown else lines)
     print_written(out)
-
-
-def _code(solved: list[SolvedNetwork]) -> int:
-    from deixis.reasoning.qualitative.networks.search.consistency import Verdict
-
-    verdicts = {each.verdict for each in solved}
-    if Verdict.INCONSISTENT in verdicts:
-        return NO
-    return UNDECIDED if Verdict.UNDECIDED in verdicts else 0

@@ -46,7 +46,7 @@ def time_command(
     from deixis.errors import DeixisError
     from deixis.grammar.formats.fluents import read_fluents
     from deixis.reasoning.temporal.errors import TemporalConflictError
-    from deixis.reasoning.temporal.timeline import Timeline
+    from deixis.workflows.reasoning.time import chronology_of, timeline_of
 
     asked = [name for name, value in (("--at", at), ("--window", window), ("--relate", relate)) if value is not None]
     if len(asked) + (explain is not None) > 1:
@@ -55,14 +55,10 @@ def time_command(
         raise DeixisError("time: --pattern excludes --relate and --explain")
     content = read_fluents(fluents)
     try:
-        timeline, items = Timeline(), (*content.fluents, *content.relations)
         with progress_bar("adding the statements") as progress:
-            for number, item in enumerate(items):
-                if progress is not None:
-                    progress(number, len(items))
-                timeline.add(item, time_limit)
+            timeline = timeline_of(content, time_limit, progress)
         with time_bar("inferring", time_limit):
-            chronology = timeline.chronology(time_limit)
+            chronology = chronology_of(content, timeline, time_limit)
     except TemporalConflictError as conflict:
         _print_conflict(conflict, as_json)
         raise typer.Exit(NO) from conflict
@@ -73,7 +69,7 @@ def time_command(
     elif at is not None or window is not None:
         _print_held(chronology, at, window, _pattern(*pattern), as_json)
     else:
-        _print_chronology(content.file, content.origin, chronology, _pattern(*pattern), as_json)
+        _print_chronology(chronology, _pattern(*pattern), as_json)
     if chronology.status == "undecided" or not chronology.exact:
         raise typer.Exit(UNDECIDED)
 
@@ -131,14 +127,11 @@ def _print_held(
     _print(show(certain, possible, chronology))
 
 
-def _print_chronology(file: str, origin: str, chronology: Chronology, pattern: Pattern, as_json: bool) -> None:
+def _print_chronology(chronology: Chronology, pattern: Pattern, as_json: bool) -> None:
     from deixis.report.reasoning.time import chronology_lines, chronology_to_dict
 
     chosen = [fluent for fluent in chronology.fluents if pattern.matches(fluent.statement)]
-    if as_json:
-        _print({"file": file, "origin": origin, **chronology_to_dict(chronology, chosen)})
-    else:
-        _print(chronology_lines(file, origin, chronology, chosen))
+    _print(chronology_to_dict(chronology, chosen) if as_json else chronology_lines(chronology, chosen))
 
 
 def _print(answer: dict[str, Any] | list[str]) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import AsJson, print_json, print_lines, print_written, require_plot
-from deixis.cli.progress import step_bar
+from deixis.cli.progress import progress_bar, step_bar
 
 experiment = typer.Typer(
     help="Run an experiment of the paper or of this project.", no_args_is_help=True, rich_markup_mode=None
@@ -63,7 +63,8 @@ def scoreboard(
     if plot is not None:
         from deixis.experiments.scoreboard.plot import plot_scoreboard
 
-        plot_scoreboard(found, plot)
+        with progress_bar("drawing"):
+            plot_scoreboard(found, plot)
     if as_json:
         print_json(to_dict(found))
     else:

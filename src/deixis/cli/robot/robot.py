@@ -7,6 +7,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +15,7 @@ import typer
 
 from deixis.cli.common import AsJson, MemoryDir, print_json, print_line, print_written
 from deixis.cli.output import StandardInput
+from deixis.cli.progress import time_bar
 from deixis.errors import DeixisError
 
 if TYPE_CHECKING:
@@ -107,7 +109,8 @@ def run(
         typing = threading.Thread(target=_listen, args=(robot, report), name="typed words", daemon=True)
         if sys.stdin is not None and sys.stdin.isatty():
             typing.start()
-        with _watched(robot, lines) if view else nullcontext():
+        waiting = time_bar("following the story", inf) if as_json else nullcontext()
+        with _watched(robot, lines) if view else waiting:
             robot.wait()
             if robot.problem is not None:
                 raise LiveError(f"{robot.problem}; the story has ended")

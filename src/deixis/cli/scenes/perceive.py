@@ -19,7 +19,7 @@ from deixis.cli.common import (
     require_scene_name,
     require_writable,
 )
-from deixis.cli.progress import stage_bar
+from deixis.cli.progress import progress_bar, stage_bar
 
 
 def perceive(
@@ -66,7 +66,8 @@ def perceive(
     if plot is not None:
         from deixis.plots.seen import plot_perceived
 
-        plot_perceived(scene, plot)
+        with progress_bar("drawing"):
+            plot_perceived(scene, plot)
     if as_json or out is None:
         print_json({**scene_to_dict(written), "shows": str(found.shows)})
         for note in found.notes:

@@ -55,7 +55,8 @@ def recognise(
     if plot is not None:
         from deixis.plots.seen import plot_recognised
 
-        plot_recognised(found, plot)
+        with progress_bar("drawing"):
+            plot_recognised(found, plot)
     if as_json:
         print_json(recognised_to_dict(found))
     else:

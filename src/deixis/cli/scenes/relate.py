@@ -44,10 +44,10 @@ def relate(
 ) -> None:
     """Print the relation of every pair of things in a scene; lengths are in metres (pixels for annotations)."""
     from deixis.reasoning.errors import SettingError
-    from deixis.reasoning.qualitative.relate import ALONG_AN_AXIS, RELATED, Related
-    from deixis.reasoning.qualitative.relate import relate as codes_of
+    from deixis.reasoning.qualitative.relate import ALONG_AN_AXIS, RELATED
     from deixis.report.scenes.relate import json_lines, matrix_lines, pair_lines
     from deixis.workflows.layouts.read import load_scene
+    from deixis.workflows.scenes.relate import relate as relations_of
 
     chosen = of or []
     if len(chosen) > 2 or (matrix and (chosen or words)):
@@ -60,8 +60,7 @@ def relate(
         raise SettingError(f"--axis goes with {' and '.join(ALONG_AN_AXIS)} only; {calculus} has no axis")
     seen = load_scene(scene, image=image)
     note_unit(seen)
-    codes = codes_of(seen.boxes, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
-    related = Related(calculus, seen.ids, codes)
+    related = relations_of(seen, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
     fitting = None
     if words:
         from deixis.reasoning.grounding.evidence.claims.scene_words import scene_words

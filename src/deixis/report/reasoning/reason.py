@@ -15,15 +15,13 @@ from deixis.reasoning.description_logic.verbalisation import Words
 from deixis.report.marks import violation
 
 
-def verdict(found: Entailment, words: Words) -> str:
+def verdict(found: Entailment) -> str:
     """Return the outcome in one sentence that claims no more than the engine decides.
 
     Parameters
     ----------
     found
         Answer of ``deixis reason``.
-    words
-        Writer of IRIs and axioms in plain words.
 
     Returns
     -------
@@ -34,6 +32,7 @@ def verdict(found: Entailment, words: Words) -> str:
         return violation(f"inconsistent ({found.engine}): the ontology has no model")
     held = "consistent" if found.complete else "no contradiction found"
     if found.unsatisfiable:
+        words = Words(found.labels)
         names = ", ".join(words.name(f"<{iri}>") for iri in found.unsatisfiable)
         held += f", but no individual can belong to {names}"
     return violation(f"{held} ({found.engine}); {len(found.inferred):,} triples inferred", bool(found.unsatisfiable))
@@ -63,21 +62,20 @@ def inferred_lines(found: Entailment, triples: bool = False) -> Iterator[str]:
         yield f"{number:8,}  {short(predicate[1:-1])}"
 
 
-def impossibility_lines(found: Entailment, words: Words) -> Iterator[str]:
+def impossibility_lines(found: Entailment) -> Iterator[str]:
     """Yield the reasons found why the ontology, or a class of it, is unsatisfiable.
 
     Parameters
     ----------
     found
         Answer of ``deixis reason``.
-    words
-        Writer of IRIs and axioms in plain words.
 
     Yields
     ------
     str
         Each reason with its axioms; then a notice if the time limit ended the search for reasons.
     """
+    words = Words(found.labels)
     for justification in found.inconsistency:
         yield f"These cannot all hold{_doubt(justification)}:"
         yield from _axiom_lines(justification, words)
@@ -141,15 +139,45 @@ def _axiom_lines(justification: Justification, words: Words) -> Iterator[str]:
         yield f"  {words.axiom(axiom)}"
 
 
-def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
+def entailment_lines(found: Entailment) -> list[str]:
+    """Return the verdict, its reasons, and the numbers of inferred triples.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis reason``.
+
+    Returns
+    -------
+    list of str
+        Lines of :func:`verdict`, :func:`impossibility_lines` and :func:`inferred_lines`.
+    """
+    return [verdict(found), *impossibility_lines(found), *inferred_lines(found)]
+
+
+def entailment_rows(found: Entailment) -> Iterator[dict[str, Any]]:
+    """Yield a row for each inferred triple.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis reason``.
+
+    Yields
+    ------
+    dict
+        ``subject``, ``predicate`` and ``object``; IRIs are whole.
+    """
+    yield from map(_plain, found.inferred)
+
+
+def entailment_to_dict(found: Entailment) -> dict[str, Any]:
     """Return the entailments as plain data for JSON.
 
     Parameters
     ----------
     found
         Answer of ``deixis reason``.
-    words
-        Writer of IRIs and axioms in plain words.
 
     Returns
     -------
@@ -157,6 +185,7 @@ def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
         Data for JSON: the engine, ``complete``, ``consistent``, the inferred triples, the unsatisfiable classes, and
         the justifications.
     """
+    words = Words(found.labels)
     return {
         "engine": found.engine.value,
         "complete": found.complete,

@@ -10,7 +10,7 @@ from deixis.report.marks import doubt, violation
 if TYPE_CHECKING:
     from deixis.reasoning.qualitative.networks.closure.rounds import Step
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
-    from deixis.workflows.reasoning.solve import SolvedNetwork
+    from deixis.workflows.reasoning.solve import Solved, SolvedNetwork
 
 MAX_CONFLICT_LISTED = 50
 """Maximum number of constraints of a conflict to list."""
@@ -134,6 +134,76 @@ def solved_to_dict(solved: SolvedNetwork) -> dict[str, Any]:
         "relations": [_constraint(network, c) for network in solved.shown for c in network.constraints] or None,
         "derivation": None if solved.step is None else _step(solved.step, networks),
     }
+
+
+def network_rows(solved: SolvedNetwork) -> Iterator[dict[str, Any]]:
+    """Yield a row for each relation of the closure or the scenario that was requested.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve`` about one network.
+
+    Yields
+    ------
+    dict
+        ``calculus``, ``first``, ``relation`` and ``second``; the relation holds its atoms, separated by spaces.
+    """
+    for network in solved.shown:
+        for c in network.constraints:
+            relation = " ".join(network.calculus.members(c.relation))
+            yield {"calculus": network.calculus.name, "first": c.first, "relation": relation, "second": c.second}
+
+
+def file_lines(solved: Solved) -> list[str]:
+    """Return the lines of all networks of a file.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve``.
+
+    Returns
+    -------
+    list of str
+        Lines of :func:`solved_lines`, network after network.
+    """
+    return [line for network in solved.networks for line in solved_lines(network)]
+
+
+def file_to_dict(solved: Solved) -> dict[str, Any]:
+    """Return all networks of a file as plain data for JSON.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``file`` and ``networks``.
+    """
+    return {"file": solved.file, "networks": [solved_to_dict(network) for network in solved.networks]}
+
+
+def file_rows(solved: Solved) -> Iterator[dict[str, Any]]:
+    """Yield a row for each network of a file.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve``.
+
+    Yields
+    ------
+    dict
+        ``line``, ``comment``, ``things``, ``constraints``, ``verdict``, ``narrowed`` and ``seconds`` of the network.
+    """
+    columns = ("line", "comment", "things", "constraints", "verdict", "narrowed", "seconds")
+    for network in solved.networks:
+        known = solved_to_dict(network)
+        yield {column: known[column] for column in columns}
 
 
 def _plain(solved: SolvedNetwork) -> list[tuple[int, list[list[float]]]]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import count
 from deixis.report.marks import doubt, violation
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from deixis.reasoning.constraints.proof import Proof
     from deixis.reasoning.temporal.bounds import Bounds
@@ -16,25 +17,22 @@ if TYPE_CHECKING:
     from deixis.reasoning.temporal.fluent import Fluent
 
 
-def chronology_lines(file: str, origin: str, chronology: Chronology, fluents: Sequence[Fluent]) -> list[str]:
+def chronology_lines(chronology: Chronology, fluents: Sequence[Fluent] | None = None) -> list[str]:
     """Return each fluent with the tightened bounds of its start, its finish and its duration, in seconds.
 
     Parameters
     ----------
-    file
-        Name of the file, for the heading.
-    origin
-        Event or time that the seconds count from.
     chronology
         Solved network of the fluents.
     fluents
-        Fluents to list.
+        Fluents to list; None for all.
 
     Returns
     -------
     list of str
         A heading and one aligned line for each fluent; then a notice if the bounds are not exact.
     """
+    fluents = chronology.fluents if fluents is None else fluents
     rows = [
         (
             fluent.id,
@@ -45,7 +43,7 @@ def chronology_lines(file: str, origin: str, chronology: Chronology, fluents: Se
         )
         for fluent in fluents
     ]
-    head = f"{file}: {len(fluents)} fluent{'' if len(fluents) == 1 else 's'}, in seconds since: {origin}"
+    head = f"{chronology.file}: {count(len(fluents), 'fluent')}, in seconds since: {chronology.origin}"
     return [head, *_aligned(rows), *_caveat(chronology)]
 
 
@@ -149,7 +147,7 @@ def conflict_lines(conflict: TemporalConflictError) -> list[str]:
     return [*lines, minimal if conflict.minimal else unsure, "The proof:", *conflict.explanation.lines("    ")]
 
 
-def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent]) -> dict[str, Any]:
+def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent] | None = None) -> dict[str, Any]:
     """Return each fluent with its tightened bounds in seconds; an unknown bound is None.
 
     Parameters
@@ -157,14 +155,17 @@ def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent]) -> dic
     chronology
         Solved network of the fluents.
     fluents
-        Fluents to list.
+        Fluents to list; None for all.
 
     Returns
     -------
     dict
-        Data for JSON with the keys ``verdict``, ``exact`` (False if more may be certain) and ``fluents``.
+        Data for JSON with the keys ``file``, ``origin``, ``verdict``, ``exact`` (False if more may be certain) and
+        ``fluents``.
     """
     return {
+        "file": chronology.file,
+        "origin": chronology.origin,
         "verdict": chronology.status.value,
         "exact": chronology.exact,
         "fluents": [
@@ -175,9 +176,35 @@ def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent]) -> dic
                 "finish": _bounds(chronology.finish(fluent.id)),
                 "duration": _bounds(chronology.duration(fluent.id)),
             }
-            for fluent in fluents
+            for fluent in (chronology.fluents if fluents is None else fluents)
         ],
     }
+
+
+def chronology_rows(chronology: Chronology) -> Iterator[dict[str, Any]]:
+    """Yield a row for each fluent, with the tightened bounds of its times in seconds.
+
+    Parameters
+    ----------
+    chronology
+        Solved network of the fluents.
+
+    Yields
+    ------
+    dict
+        ``id``, ``statement``, and the earliest and latest start and finish (``start_from``, ``start_to``,
+        ``finish_from``, ``finish_to``); an unknown bound is infinite.
+    """
+    for fluent in chronology.fluents:
+        start, finish = chronology.start(fluent.id), chronology.finish(fluent.id)
+        yield {
+            "id": fluent.id,
+            "statement": str(fluent.statement),
+            "start_from": start.lower,
+            "start_to": start.upper,
+            "finish_from": finish.lower,
+            "finish_to": finish.upper,
+        }
 
 
 def _bounds(bounds: Bounds) -> dict[str, Any]:

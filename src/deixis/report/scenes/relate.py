@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -143,6 +143,39 @@ def json_lines(
         ]
         yield f'  "between": {json.dumps(between, ensure_ascii=False)}'
     yield "}"
+
+
+def related_to_dict(related: Related) -> dict[str, Any]:
+    """Return the relations of all pairs as plain data, with the keys of :func:`json_lines`.
+
+    Parameters
+    ----------
+    related
+        Relations of all pairs of n things in one calculus.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``calculus``, ``objects`` and ``pairs``.
+    """
+    return {"calculus": related.calculus, "objects": list(related.ids), "pairs": list(related_rows(related))}
+
+
+def related_rows(related: Related) -> Iterator[dict[str, Any]]:
+    """Yield a row for every ordered pair.
+
+    Parameters
+    ----------
+    related
+        Relations of all pairs of n things in one calculus.
+
+    Yields
+    ------
+    dict
+        ``subject``, ``relation`` and ``object``.
+    """
+    for subject, relation, other in related.pairs():
+        yield {"subject": subject, "relation": relation, "object": other}
 
 
 def _json(text: str) -> str:

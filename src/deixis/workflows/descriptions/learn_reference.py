@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -54,7 +54,11 @@ class LearnedReference:
 
 
 def learn_reference(
-    lines: Iterable[str], folder: Path, strength: float = 3.0, prior: Model | None = None
+    lines: Iterable[str],
+    folder: Path,
+    strength: float = 3.0,
+    prior: Model | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> LearnedReference:
     """Fit the words of descriptions, with their frames, to descriptions whose target is known.
 
@@ -69,6 +73,8 @@ def learn_reference(
         Weight of the prior, above 0: the cost in nats of changing one weight by 1.
     prior
         Model from which the fit starts; the shipped one by default.
+    progress
+        Called after each step of the fit with the number of steps done and their maximum.
 
     Returns
     -------
@@ -100,7 +106,7 @@ def learn_reference(
         raise DescriptionError(f"nothing to learn; {why}{more}")
     unset = {name: np.zeros_like(values) for name, values in initial_weights(default_ontology().colours).items()}
     start = replace(before, weights={**unset, **before.weights})
-    learned = replace(start, weights=fit(start, examples, strength, ITERATIONS))
+    learned = replace(start, weights=fit(start, examples, strength, ITERATIONS, progress))
     steps = {name: float(np.abs(values - start.weights[name]).max()) for name, values in learned.weights.items()}
     changed = {name: step for name, step in sorted(steps.items(), key=lambda one: -one[1]) if step >= CHANGED}
     right = (_right(before, examples), _right(learned, examples))

@@ -183,10 +183,6 @@ class Inference(Answer):
         return tuple(sorted(lines))
 
 
-LAST_SHARE = 0.1
-"""Of the time limit, for saying why a script contradicts itself, where seeing that took all of it."""
-
-
 def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
     """Return what follows from a script, and whether it contradicts itself.
 
@@ -208,7 +204,7 @@ def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
     of_claims, implied = _implied(script, time_limit)
     implications = implied[-1]
     possible = implications.consistent
-    conflict = None if possible else find_conflict(implications, max(deadline, Deadline.after(LAST_SHARE * time_limit)))
+    conflict = None if possible else find_conflict(implications, deadline.for_reasons(time_limit))
     return Inference(script.facts, implications, conflict, implications.decided, deadline, of_claims, implied[:-1])
 
 

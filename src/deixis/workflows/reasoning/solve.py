@@ -1,4 +1,4 @@
-"""Solves the networks of a file, one by one: the verdict, what it rests on, and what else was asked for."""
+"""Solve the networks of a file, one by one: the verdict, its reasons, and what else was requested."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
+from deixis.grammar.formats.networks import NetworkText, parse_networks, read_networks
 from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
 from deixis.reasoning.qualitative.networks.closure.algebraic import close
 from deixis.reasoning.qualitative.networks.closure.state import Progress
@@ -22,18 +24,14 @@ from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
 from deixis.reasoning.qualitative.networks.derivation import explain, require_pair
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.realisation.boxes import unrelated
-from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict
+from deixis.reasoning.qualitative.networks.search.consistency import solve as solve_network
 from deixis.reasoning.qualitative.relate import relate
 
 if TYPE_CHECKING:
-    from deixis.grammar.formats.networks import NetworkText
     from deixis.reasoning.qualitative.calculi.calculus import Calculus
     from deixis.reasoning.qualitative.networks.closure.rounds import Step
     from deixis.reasoning.qualitative.networks.combination import Contribution
-
-
-LAST_SHARE = 0.1
-"""Share of the time limit that finding the reasons gets where solving has used all of it."""
 
 
 @dataclass(frozen=True)
@@ -49,24 +47,9 @@ class SolveRequest:
     conflict: bool = True
     time_limit: float = 60.0
 
-    def extended(self, deadline: Deadline) -> Deadline:
-        """Return the deadline for finding the reasons after the verdict.
 
-        Parameters
-        ----------
-        deadline
-            The deadline of the verdict.
-
-        Returns
-        -------
-        Deadline
-            A later deadline.
-        """
-        return max(deadline, Deadline.after(LAST_SHARE * self.time_limit))
-
-
-@dataclass(frozen=True, eq=False)
-class SolvedNetwork:
+@dataclass(frozen=True, eq=False, repr=False)
+class SolvedNetwork(Answer):
     """One network of a file, and what was found about it.
 
     ``seconds`` is the time that the verdict took. ``shown`` are the networks that were asked for, the closure or the
@@ -87,6 +70,100 @@ class SolvedNetwork:
     step: Step | None = None
     asked: tuple[int, int] | None = None
     explained: bool = True  # False where time ran out before it was clear why
+
+    def summary(self) -> str:
+        """Return the verdict and the number of things."""
+        return f"{self.verdict}, {count(self.text.networks[0].size, 'thing')}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solved(Answer):
+    r"""The networks of a file with their verdicts.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.solve(text="2\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n", calculus="point")
+    >>> found
+    <Solved 1 network: inconsistent>
+    >>> [str(constraint.source) for _, constraint in found.networks[0].conflict]
+    ['<text>:2:1', '<text>:3:1', '<text>:4:1']
+    """
+
+    file: str
+    networks: tuple[SolvedNetwork, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """INCONSISTENT if any of the networks is, else UNDECIDED if any of them is."""
+        verdicts = {solved.verdict for solved in self.networks}
+        return next(one for one in (Verdict.INCONSISTENT, Verdict.UNDECIDED, Verdict.CONSISTENT) if one in verdicts)
+
+    def summary(self) -> str:
+        """Return the number of networks and the verdict on all of them."""
+        return f"{count(len(self.networks), 'network')}: {self.verdict}"
+
+
+def solve(
+    network: str | Path | None = None,
+    *,
+    calculus: str,
+    text: str | None = None,
+    closure: bool = False,
+    scenario: bool = False,
+    explain: tuple[int, int] | None = None,
+    reasons: bool = True,
+    time_limit: float = 60.0,
+) -> Solved:
+    r"""Decide whether the constraint networks of a file are consistent.
+
+    Parameters
+    ----------
+    network
+        File of the networks, in GQR's format.
+    calculus
+        Name of the calculus of the constraints; several joined by ``+``, or a file ``.spec``.
+    text
+        The networks themselves, instead of a file.
+    closure
+        True to compute the closed network.
+    scenario
+        True to find one solution.
+    explain
+        Indexes of two things whose relation to explain.
+    reasons
+        True to find a minimal conflict in each inconsistent network.
+    time_limit
+        Seconds for each network.
+
+    Returns
+    -------
+    Solved
+        The verdict on each network, with its reasons and what was requested.
+
+    Raises
+    ------
+    DeixisError
+        If the calculus is unknown, or two calculi cannot be joined.
+    NetworkFileError
+        If the file has errors; the message names the line and column of each.
+    LimitError
+        If a network does not fit in memory.
+    TypeError
+        Unless exactly one of ``network`` and ``text`` is given.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> print(deixis.solve(text="1\n0 1 ( DC )\n.\n", calculus="rcc8").verdict)
+    consistent
+    """
+    if (network is None) == (text is None):
+        raise TypeError("`solve` must be given either a path or `text`, not both or neither")
+    calculi, _ = calculi_named(calculus)
+    texts = read_networks(network, calculi) if network is not None else parse_networks(text or "", calculi)
+    request = SolveRequest(closure, scenario, explain, reasons, time_limit)
+    return Solved("<text>" if network is None else str(network), tuple(solve_text(one, request) for one in texts))
 
 
 def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
@@ -118,12 +195,12 @@ def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
         return (brought.calculus,), brought.notes
     names = [name.strip() for name in text.split("+")]
     if len(set(names)) < len(names):
-        raise DeixisError(f"--calculus {text}: name each calculus once")
+        raise DeixisError(f"calculus {text}: name each calculus once")
     calculi = tuple(calculus(name) for name in names)
     joined = {end.name for link in links_between(calculi) for end in (link.source, link.target)}
     for each in calculi:
         if len(calculi) > 1 and each.name not in joined:
-            raise DeixisError(f"--calculus {text}: no bridge connects {each.name} with the others")
+            raise DeixisError(f"calculus {text}: no bridge connects {each.name} with the others")
     return calculi, ()
 
 
@@ -172,7 +249,7 @@ def _solve_single(
         require_pair(text.network, *request.explain)
     small, things = text.network.compact()
     closure = close(small, deadline, progress)
-    found = solve(small, deadline, progress, request.scenario)
+    found = solve_network(small, deadline, progress, request.scenario)
     verdict, reason, boxes = found.verdict, found.reason, None
     if (
         verdict is Verdict.UNDECIDED
@@ -187,7 +264,7 @@ def _solve_single(
     solved = _with_boxes(solved, boxes, things.tolist(), request)
     on_solved(solved)
     if verdict is Verdict.INCONSISTENT and request.conflict:
-        conflict = minimal_conflict(text.network, request.extended(deadline), inconsistent=True)
+        conflict = minimal_conflict(text.network, deadline.for_reasons(request.time_limit), inconsistent=True)
         if conflict is not None:
             stated = tuple((text.network, c) for c in conflict.constraints)
             solved = replace(solved, conflict=stated, minimal=conflict.minimal)
@@ -197,7 +274,7 @@ def _solve_single(
         relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.known_pairs().tolist())
         solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
     if request.explain is not None and verdict is not Verdict.INCONSISTENT:
-        deadline = request.extended(deadline)
+        deadline = deadline.for_reasons(request.time_limit)
         step = explain(text.network, *request.explain, deadline)
         solved = replace(solved, step=step, explained=step is not None or not deadline.passed)
     return solved
@@ -208,7 +285,7 @@ def _solve_joint(
 ) -> SolvedNetwork:
     started, deadline = time.perf_counter(), Deadline.after(request.time_limit)
     if request.explain is not None:
-        raise DeixisError("--explain is for one calculus at a time")
+        raise DeixisError("a relation can be explained in one calculus at a time only")
     links: Sequence[Link] = links_between([network.calculus for network in text.networks])
     networks, things = compacted(text.networks)
     found = solve_jointly(networks, links, deadline, progress, request.scenario)
@@ -219,7 +296,7 @@ def _solve_joint(
     solved = _with_boxes(solved, found.boxes, things.tolist(), request)
     on_solved(solved)
     if found.verdict is Verdict.INCONSISTENT and request.conflict:
-        solved = _with_conflict(solved, links, request.extended(deadline))
+        solved = _with_conflict(solved, links, deadline.for_reasons(request.time_limit))
     elif request.closure:
         pairs = zip(text.networks, found.closure.states, strict=True)
         solved = replace(

@@ -14,17 +14,24 @@ from deixis.memory.semantic.rdf.graphs import UNION, GraphName
 from deixis.memory.semantic.rdf.package import SHAPES_FILE
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.memory.semantic.validation.by_shapes import ShapesReport, validate_by_shapes
+from deixis.reasoning.errors import require_time_limit
+from deixis.workflows.reasoning.reason import paths
 
 
-def validate_files(files: Sequence[Path], shapes: Sequence[Path] = (), time_limit: float = 60.0) -> ShapesReport:
-    """Validate the triples of some files, taken together, by SHACL shapes.
+def validate(
+    data: SemanticMemory | str | Path | Sequence[str | Path],
+    shapes: str | Path | Sequence[str | Path] = (),
+    time_limit: float = 60.0,
+) -> ShapesReport:
+    """Validate the triples of files, taken together, or of a memory, by SHACL shapes.
 
     Parameters
     ----------
-    files
-        Files of data.
+    data
+        File of data, several files, or the memory of a session: then everything remembered, with the ontology and what
+        was inferred.
     shapes
-        Files of shapes; default: those of Deixis.
+        File of shapes, or several; default: those of Deixis.
     time_limit
         Seconds until the report.
 
@@ -42,37 +49,14 @@ def validate_files(files: Sequence[Path], shapes: Sequence[Path] = (), time_limi
     LimitError
         If the time limit is reached.
     """
+    require_time_limit(time_limit)
     deadline = Deadline.after(time_limit)
-    return validate_by_shapes(_triples(files), _shapes(shapes), deadline)
-
-
-def validate_memory(memory: SemanticMemory, shapes: Sequence[Path] = (), time_limit: float = 60.0) -> ShapesReport:
-    """Validate everything remembered, with the ontology and what was inferred, by SHACL shapes.
-
-    Parameters
-    ----------
-    memory
-        The open memory.
-    shapes
-        Files of shapes; default: those of Deixis.
-    time_limit
-        Seconds until the report.
-
-    Returns
-    -------
-    ShapesReport
-        All results, violations first.
-
-    Raises
-    ------
-    ShapesError
-        If the shapes are malformed.
-    LimitError
-        If the time limit is reached.
-    """
-    deadline = Deadline.after(time_limit)
-    data = [triple for name in (GraphName.ONTOLOGY, GraphName.EPISODES, *UNION) for triple in memory.triples(name)]
-    return validate_by_shapes(dict.fromkeys(data), _shapes(shapes), deadline)
+    if isinstance(data, SemanticMemory):
+        names = (GraphName.ONTOLOGY, GraphName.EPISODES, *UNION)
+        triples = list(dict.fromkeys(triple for name in names for triple in data.triples(name)))
+    else:
+        triples = _triples(paths(data))
+    return validate_by_shapes(triples, _shapes(paths(shapes)), deadline)
 
 
 def _triples(files: Sequence[Path]) -> list[ox.Triple]:

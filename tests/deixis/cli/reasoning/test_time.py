@@ -55,8 +55,11 @@ def test_the_commands_of_the_page(command: str, answer: str) -> None:
 
 
 def test_the_python_of_the_page(capsys: pytest.CaptureFixture[str]) -> None:
-    (program,) = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    exec(compile(program, "docs/reference/time.md", "exec"), {})
+    programs = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    names: dict[str, object] = {}
+    for program in programs:
+        exec(compile(program, "docs/reference/time.md", "exec"), names)
+    assert len(programs) == 2
     assert capsys.readouterr().out.startswith("before(pouring, cleared)   by definition\n")
 
 

@@ -31,7 +31,10 @@ def test_a_fit_learns_that_near_means_far() -> None:
     start = Model(
         initial_weights(COLOURS), Lexis(NOUNS.features, NOUNS.similarity, NOUNS.called, NOUNS.number, COLOURS)
     )
-    fitted = Model(fit(start, examples[:20], penalty=0.1, iterations=15), start.lexis)
+    steps: list[tuple[int, int]] = []
+    weights = fit(start, examples[:20], 0.1, 15, lambda done, total: steps.append((done, total)))
+    assert steps == [(done, 15) for done in range(1, len(steps) + 1)] and len(steps) > 3
+    fitted = Model(weights, start.lexis)
 
     def right(model: Model) -> int:
         return sum(model.probabilities(query, one.room).argmax() == one.target for one in examples[20:])
