@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import count
@@ -36,6 +37,7 @@ from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_noun
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.tables import LITERAL
 from deixis.grammar.errors import ScriptTimeError
+from deixis.grammar.parsers import ParsedGrammar
 from deixis.ontology.tbox import Ontology, default_ontology
 
 if TYPE_CHECKING:
@@ -330,11 +332,8 @@ def _feed(lark: Lark, chunks: list[Chunk], at: int, end: int) -> tuple[Built | N
 
 @cache
 def _parser() -> Lark:
-    from lark import Lark
+    return ENGLISH.parser()
 
-    from deixis.grammar.layout.language import NoLexer
 
-    return Lark.open(
-        "english.lark", rel_to=__file__, parser="lalr", lexer=NoLexer, start="clause", transformer=Builder(),
-        maybe_placeholders=True,
-    )  # fmt: skip
+ENGLISH = ParsedGrammar(Path(__file__).with_name("english.lark"), start="clause", transformer=Builder())
+"""The grammar of clauses."""

@@ -5,45 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import Any
+from pathlib import Path
 
 from lark import Lark, Token
 from lark.lark import PostLex
-from lark.lexer import Lexer
 
 from deixis.grammar.layout.claims import CLAIM_OF_PATTERNS, CLAIM_PATTERNS, HAS, HAS_PATTERN, PHRASE_STARTS
 from deixis.grammar.layout.tokens import TERMINALS_WITHOUT_RULE, Phrases, Scanner
 from deixis.grammar.layout.tree import TreeBuilder
 from deixis.grammar.layout.words import by_first_word, chains, phrase_pattern
+from deixis.grammar.parsers import ParsedGrammar
 from deixis.ontology.relations.relation import plain_phrase
 from deixis.ontology.tbox import Ontology
-
-
-class NoLexer(Lexer):
-    """Placeholder for lark's lexer: a :class:`Scanner` feeds the parser, so that lark compiles no patterns."""
-
-    def __init__(self, conf: Any) -> None:
-        pass
-
-    def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Token]:
-        """Raise NotImplementedError: lark never calls it.
-
-        Parameters
-        ----------
-        lexer_state, parser_state
-            States of lark.
-
-        Yields
-        ------
-        Token
-            Nothing.
-
-        Raises
-        ------
-        NotImplementedError
-            Always.
-        """
-        raise NotImplementedError("tokens come from the scanner")
 
 
 class KeepUnusedTerminals(PostLex):
@@ -65,6 +38,12 @@ class KeepUnusedTerminals(PostLex):
             A token.
         """
         return stream
+
+
+LAYOUT = ParsedGrammar(
+    Path(__file__).with_name("layout.lark"), start="statement", transformer=TreeBuilder(), postlex=KeepUnusedTerminals()
+)
+"""The grammar of layouts."""
 
 
 @dataclass(frozen=True)
@@ -157,12 +136,4 @@ def _build(
 @cache
 def _parser() -> Lark:
     """Return the parser of ``layout.lark``, which all ontologies share."""
-    return Lark.open(
-        "layout.lark",
-        rel_to=__file__,
-        parser="lalr",
-        lexer=NoLexer,
-        start="statement",
-        transformer=TreeBuilder(),
-        postlex=KeepUnusedTerminals(),
-    )
+    return LAYOUT.parser()
