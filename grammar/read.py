@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from deixis.deadline import Deadline
-from deixis.grammar.errors import ScriptError, ScriptFileError
+from deixis.grammar.errors import ScriptFileError
 from deixis.grammar.files import MAX_FILE_BYTES, read_text
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
@@ -35,7 +35,6 @@ def read_script_file(
     path: str | Path,
     ontology: Ontology | None = None,
     deadline: Deadline = Deadline.never(),
-    strict: bool = False,
 ) -> Script:
     """Read a script: English from ``NAME.txt`` or from standard input (``-``), else a layout.
 
@@ -47,8 +46,6 @@ def read_script_file(
         Words that the script may use. By default :func:`deixis.ontology.tbox.default_ontology`.
     deadline
         Time limit.
-    strict
-        Take a phrase of an English text that is not understood as an error.
 
     Returns
     -------
@@ -60,7 +57,7 @@ def read_script_file(
     ScriptFileError
         If the file cannot be read.
     ScriptError
-        If a layout has errors, or nothing of a text was understood, or with ``strict`` not all of it.
+        If a layout has errors, or nothing of a text was understood.
     ScriptTimeError
         If the time limit is reached.
     """
@@ -74,13 +71,7 @@ def read_script_file(
         text, shown = _standard_input(), "<stdin>"
     else:
         text, shown = read_text(Path(path), str(path)), str(path)
-    script = read_english(text, shown, ontology, deadline)
-    problems = (
-        [problem for sentence in script.reading.sentences for problem in sentence.problems] if script.reading else []
-    )
-    if strict and problems:
-        raise ScriptError(tuple(problems))
-    return script
+    return read_english(text, shown, ontology, deadline)
 
 
 def _standard_input() -> str:

@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from deixis.workflows.layouts.infer import Inference, infer
     from deixis.workflows.layouts.lint import Lint, lint
     from deixis.workflows.layouts.read import read_script
+    from deixis.workflows.layouts.read_english import ReadText, read
     from deixis.workflows.reasoning.reason import reason
     from deixis.workflows.reasoning.solve import Solved, SolvedNetwork, solve
     from deixis.workflows.reasoning.time import chronology
@@ -95,6 +96,7 @@ __all__ = [
     "PointCloud",
     "Prediction",
     "QueryResult",
+    "ReadText",
     "Recall",
     "Recognised",
     "RecognisedActivity",
@@ -127,6 +129,7 @@ __all__ = [
     "lint",
     "perceive",
     "point",
+    "read",
     "read_scene",
     "read_script",
     "reason",
@@ -163,6 +166,7 @@ _HOMES = {
     "PointCloud": "deixis.perception.clouds.cloud",
     "Prediction": "deixis.reasoning.activities.prediction",
     "QueryResult": "deixis.memory.semantic.queries.results",
+    "ReadText": "deixis.workflows.layouts.read_english",
     "Recall": "deixis.workflows.knowledge.recall",
     "Recognised": "deixis.learning.views.views",
     "RecognisedActivity": "deixis.reasoning.activities.grounding",
@@ -195,6 +199,7 @@ _HOMES = {
     "lint": "deixis.workflows.layouts.lint",
     "perceive": "deixis.workflows.scenes.perceive",
     "point": "deixis.workflows.scenes.point",
+    "read": "deixis.workflows.layouts.read_english",
     "read_scene": "deixis.perception.formats.scene_json",
     "read_script": "deixis.workflows.layouts.read",
     "reason": "deixis.workflows.reasoning.reason",

@@ -56,6 +56,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
         "Lint": deixis.lint("examples/contradiction.layout"),
         "Telling": deixis.tell(SCRIPT),
         "Simulation": deixis.simulate(SCRIPT, seed=7),
+        "ReadText": deixis.read(text="The fork is left of the plate. If there is soup, the spoon is on the plate."),
         "Solved": deixis.solve("examples/closed_but_inconsistent.csp", calculus="allen"),
         "SolvedNetwork": deixis.solve("examples/place_setting.csp", calculus="ra", closure=True).networks[0],
         "Entailment": deixis.reason("ontology/deixis.ttl", "rl"),
@@ -103,6 +104,7 @@ def test_tables_have_a_row_for_each_thing(answers: dict[str, Answer]) -> None:
     assert [row["state"] for row in rows["Tracking"]] == ["seen", "gone"]
     assert len(rows["LayoutConcept"]) == len(rows["CountedConcept"]) == len(SCRIPT.facts)
     assert {row["verdict"] for row in rows["Check"]} == {"correct", "missing", "misplaced", "extra"}
+    assert [row["condition"] for row in rows["ReadText"]] == [None, "if there is soup"]
     assert [row["verdict"] for row in rows["Solved"]] == ["inconsistent"]
     assert {row["calculus"] for row in rows["SolvedNetwork"]} == {"ra"}
     assert len(rows["Related"]) == 12 * 11

@@ -172,6 +172,11 @@ RENDERERS = {
     "QueryResult": Renderer(
         "report.knowledge.rows:query_to_dict", "report.knowledge.rows:query_lines", "report.knowledge.rows:query_rows"
     ),
+    "ReadText": Renderer(
+        "report.layouts.read:read_text_to_dict",
+        "report.layouts.read:read_text_lines",
+        "report.layouts.read:read_text_rows",
+    ),
     "SolvedNetwork": Renderer(
         "report.reasoning.solve:solved_to_dict",
         "report.reasoning.solve:solved_lines",

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli.common import AsJson, TimeLimit, deadline_of, print_json, print_lines
+from deixis.cli.common import AsJson, TimeLimit, print_json, print_lines
 from deixis.cli.progress import time_bar
 
 
@@ -28,16 +28,16 @@ def read(
     as_json: AsJson = False,
 ) -> None:
     """Print each sentence of an English text with its facts and a paraphrase."""
-    from deixis.report.layouts.read import reading_lines, reading_to_dict
-    from deixis.workflows.layouts.read import read_english_file
+    from deixis.report.layouts.read import reading_lines
+    from deixis.workflows.layouts.read_english import read as read_text
 
     with time_bar("reading", time_limit, source=text):
-        script = read_english_file(text, deadline_of(time_limit), strict)
+        found = read_text(text, strict=strict, time_limit=time_limit)
     if as_json or format is ReadFormat.JSON:
-        print_json(reading_to_dict(script))
+        print_json(found.to_dict())
     elif format is ReadFormat.LAYOUT:
         from deixis.grammar.layout.format import format_script
 
-        sys.stdout.write(format_script(script))
+        sys.stdout.write(format_script(found.script))
     else:
-        print_lines(reading_lines(script))
+        print_lines(reading_lines(found.script))

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from deixis.grammar.reading import Reading, ReadSentence, StatedFact
     from deixis.grammar.script import Script
     from deixis.ontology.graph.facts import Fact
+    from deixis.workflows.layouts.read_english import ReadText
 
 
 def reading_lines(script: Script) -> list[str]:
@@ -95,6 +96,63 @@ def reading_to_dict(script: Script) -> dict[str, Any]:
         "absent": list(reading.absent),
         "understood": round(reading.understood, 4),
     }
+
+
+def read_text_lines(found: ReadText) -> list[str]:
+    """Return the lines of :func:`reading_lines`.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis read``.
+
+    Returns
+    -------
+    list of str
+        The lines.
+    """
+    return reading_lines(found.script)
+
+
+def read_text_to_dict(found: ReadText) -> dict[str, Any]:
+    """Return the data of :func:`reading_to_dict`.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis read``.
+
+    Returns
+    -------
+    dict
+        Data for JSON.
+    """
+    return reading_to_dict(found.script)
+
+
+def read_text_rows(found: ReadText) -> Iterator[dict[str, Any]]:
+    """Yield a row for each fact that the text states, asserted or not.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis read``.
+
+    Yields
+    ------
+    dict
+        The ``fact``, whether it is ``asserted``, its ``condition`` or None, its ``confidence`` in [0, 1], and the
+        number and text of its ``sentence``, counted from 0.
+    """
+    for fact in found.reading.stated:
+        yield {
+            "fact": str(fact.content),
+            "asserted": fact.asserted,
+            "condition": fact.condition,
+            "confidence": fact.confidence,
+            "sentence": fact.sentence,
+            "text": found.reading.sentences[fact.sentence].text,
+        }
 
 
 def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:

@@ -265,34 +265,3 @@ def _in_folder(folder: Path) -> Iterator[tuple[Path, Path]]:
         raise DeixisError(f"{there}: there is no {name}{lacking} beside it")
     for name, script in scripts.items():
         yield script, scenes[name]
-
-
-def read_english_file(path: str | Path, deadline: Deadline = Deadline.never(), strict: bool = False) -> Script:
-    """Read a text in English from a file, whatever its ending, or from standard input (``-``).
-
-    Parameters
-    ----------
-    path
-        The file.
-    deadline
-        Time limit.
-    strict
-        True to refuse a text that is not understood whole.
-
-    Returns
-    -------
-    Script
-        The facts, claims and sentences.
-
-    Raises
-    ------
-    DeixisError
-        If the file is a layout script.
-    ScriptError
-        If nothing is understood or, with ``strict``, not all.
-    """
-    if not is_english(path):
-        raise DeixisError(
-            f"'{path}' must be a .txt file with an English text, or - for standard input; 'deixis parse' reads layouts"
-        )
-    return read_script_file(path, deadline=deadline, strict=strict)
