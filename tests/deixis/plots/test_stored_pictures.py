@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -83,6 +84,24 @@ def recognised_table() -> Figure:
     return Recognised(scene, {thing.id: answers[k % 3] for k, thing in enumerate(scene.objects)}).plot()
 
 
+def looked_at_table() -> Figure:
+    """Draw a robot's look at a table on which fork and knife are exchanged and the cup is missing."""
+    places = {"fork": (0.0, 0.02), "plate": (0.1, 0.0), "knife": (0.36, 0.02), "cup": (0.34, 0.3)}
+    sizes = {"fork": (0.025, 0.2), "plate": (0.22, 0.22), "knife": (0.02, 0.21), "cup": (0.08, 0.08)}
+
+    def table(**places: tuple[float, float]) -> deixis.Scene:
+        low = np.array([(*place, 0.0) for place in places.values()])
+        return deixis.Scene.from_boxes(low, low + [(*sizes[name], 0.02) for name in places], labels=list(places))
+
+    with TemporaryDirectory() as folder, deixis.Robot(Path(folder) / "memory") as robot:
+        robot.sees(table(**places), at=0.0)
+        robot.told("layout supper; fork left of plate; knife right of plate; cup above knife", at=1.0)
+        robot.sees(table(**{name: (x + 0.004, y) for name, (x, y) in places.items()}), at=2.0)
+        robot.told("layout supper; fork left of plate; knife right of plate; cup above knife", at=3.0)
+        robot.sees(table(plate=places["plate"], fork=places["knife"], knife=places["fork"]), at=4.0)
+        return robot.look().plot()
+
+
 def story(path: Path) -> None:
     """Draw two moments of a live run, seen as discs and a bar in a small image."""
     from deixis.plots.live_story import write_moments
@@ -111,6 +130,7 @@ PICTURES: list[Callable[[], Figure]] = [
     scene_of_boxes,
     perceived_table,
     recognised_table,
+    looked_at_table,
 ]
 
 
