@@ -37,6 +37,7 @@ from deixis.perception.tracking.things.completion import (
     floating_parts,
     revealed_part,
     stands_behind,
+    supporting_parts,
 )
 from deixis.perception.tracking.things.fitting import Fit, fits
 from deixis.perception.tracking.things.hands import Hands
@@ -99,6 +100,9 @@ ON_ITS_OWNER = -2
 TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
 """Largest time in seconds between the coming of a thing and of a piece of it, their distance in metres, and the least
 mean likeness of their colours in any light."""
+
+REVEALED = 0.5
+"""Least share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
 
 FILLED = 0.5
 """Least ratio of the sides of two boxes of one thing."""
@@ -760,12 +764,16 @@ class Tracker:
 
         seen = flat()
         resting = [other for other in self._things if other is not thing and not other.active]
-        merged = [*seen.pieces(resting), *floating_parts(thing, resting)]
+        parts_below = supporting_parts(thing, resting)
+        merged = list(dict.fromkeys([*seen.pieces(resting), *floating_parts(thing, resting), *parts_below]))
         resting = [other for other in resting if other not in merged]
         parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
         if merged:
             reference.owner.ravel()[parts] = thing.slot
             seen = flat()
+            oldest = min([thing, *merged], key=lambda each: each.at)  # who knows the thing knows it by this name
+            thing.id, oldest.id = oldest.id, thing.id
+            thing.at, thing.since = oldest.at, min(thing.since, oldest.since)
         new, revealed = seen.missing_part(), revealed_part(thing, resting, reference, view)
         thing.views += 1
         if seen.is_seen_again or (moves and seen.is_carried):  # what one view shows may be something else
@@ -959,6 +967,7 @@ class Tracker:
                     came.append(self._enter(found, cloud, own, k, at))
                     thing = self._things[-1]
                     thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
+                    thing.revealed = float((reference.owner.ravel()[pixels] == UNKNOWN_OWNER).mean()) > REVEALED
                     thing.beneath = reference.give(pixels, thing.slot, image)
         self._let_stand(came, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER

@@ -163,6 +163,39 @@ def floating_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline
     return found
 
 
+def supporting_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline]:
+    """Return the things that are the stem and the foot of one that seems to float, such as the bowl of a wine glass.
+
+    Parameters
+    ----------
+    thing
+        Thing at rest.
+    others
+        Other things at rest.
+
+    Returns
+    -------
+    list of Pipeline
+        Things of its colour that came with it, below it and about its vertical axis; none if something else bears it.
+    """
+    corners = _corners(thing)
+    middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
+    if not thing.first_rest or bottom < MIN_LIFTED:
+        return []
+    radius = thing.oriented.extents[0] / 2 + STRIP_MARGIN
+    found = []
+    for other in others:
+        ends = _corners(other)
+        aside = float(np.linalg.norm(ends.mean(axis=0)[:2] - middle[:2])) + other.oriented.extents[0] / 2
+        if not (other.first_rest and other.at == thing.at and aside < radius and ends[:, 2].max() < bottom + BEYOND):
+            continue
+        tints = other.cloud.colours
+        if tints is None or thing.likeness(tints.astype(np.float64), np.inf).mean() < MIN_HANDLE_LIKENESS:
+            return []
+        found.append(other)
+    return found
+
+
 def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage, view: TableView) -> bool:
     """Return True if a thing that seems to float stands on the table, with its foot behind something.
 
@@ -351,16 +384,19 @@ class FlatThing:
         Returns
         -------
         list of Pipeline
-            Shorter and smaller flat things in its line and of its colour, which came with it and have not moved since.
+            Shorter flat things in its line and of its colour that have not moved since they came. They came with it and
+            are smaller, or one of the two came into view without being set down.
         """
         if not self.is_seen:
             return []
         found = []
         for thing in things:
             own = self._owner == thing.slot
-            together = thing.at == self._thing.at and thing.first_rest and self._thing.first_rest
+            revealed = thing.revealed or self._thing.revealed
+            together = (thing.at == self._thing.at or revealed) and thing.first_rest and self._thing.first_rest
             shorter = thing.oriented.extents[0] < self._thing.oriented.extents[0]
-            fits = together and shorter and 0 < own.sum() <= self._seed.sum() and thing.oriented.extents[2] < FLAT
+            smaller = own.any() and (revealed or own.sum() <= self._seed.sum())  # what was hidden may be hidden again
+            fits = together and shorter and smaller and thing.oriented.extents[2] < FLAT
             if not fits or not any(self._leads_to(own, line) for line in (self._line, self._line_to(thing))):
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]

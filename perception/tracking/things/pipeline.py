@@ -123,6 +123,8 @@ class Pipeline:
     """Time in seconds when it was last completed."""
     views: int = field(default=0, init=False)
     """Number of views from which it was completed during its present rest."""
+    revealed: bool = field(default=False, init=False)
+    """True if it came into view where nothing was known, so that it may be a part of a thing that is older."""
     rest: int = field(default=0, init=False)
     """Number of its present or last rest, which no other rest of any thing has."""
     particles: int = field(default=0, init=False)
