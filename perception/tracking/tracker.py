@@ -104,6 +104,9 @@ mean likeness of their colours in any light."""
 REVEALED = 0.5
 """Least share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
 
+SET_DOWN = 1.0
+"""Time in seconds before a new thing is steady in which the hand that sets it down is near."""
+
 FILLED = 0.5
 """Least ratio of the sides of two boxes of one thing."""
 
@@ -214,7 +217,7 @@ class Tracker:
         limits = self.settings
         self._reference.remember(image, changes, at, limits.tolerance, self._deviation, limits.colour)
         resting = [thing for thing in self._things if not thing.active]
-        hand = self._hands.see(image, changes, self._outline, self._back, resting)
+        hand = self._hands.see(image, changes, self._outline, self._back, resting, at)
         by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
         if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
             return self._begin_anew(cloud, image, changes, at, number)
@@ -967,13 +970,19 @@ class Tracker:
                     came.append(self._enter(found, cloud, own, k, at))
                     thing = self._things[-1]
                     thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
-                    thing.revealed = float((reference.owner.ravel()[pixels] == UNKNOWN_OWNER).mean()) > REVEALED
+                    thing.revealed = self._is_revealed(thing, pixels)
                     thing.beneath = reference.give(pixels, thing.slot, image)
         self._let_stand(came, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
         if self._hand_at < at:  # else a thing that is set down may not be whole yet
             reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
         return tuple(came)
+
+    def _is_revealed(self, thing: Pipeline, pixels: NDArray[np.intp]) -> bool:
+        """Return True if a new thing was there before: nothing was known at its pixels, or no hand has been near."""
+        assert self._reference is not None
+        unknown = float((self._reference.owner.ravel()[pixels] == UNKNOWN_OWNER).mean())
+        return unknown > REVEALED or not self._hands.were_near(thing.pose[:3, 3], thing.reach, thing.at - SET_DOWN)
 
     def _filled(self, found: Detection, k: int) -> Pipeline | None:
         """Return the thing at rest whose box object ``k`` of a detection fills: it is the thing, which was hidden."""
