@@ -113,6 +113,9 @@ FILLED = 0.5
 CONFIRM_AFTER = 0.3
 """Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
 
+AGAIN_AFTER = 1.0
+"""Time in seconds after which a moving camera may show the other end of a thing that something partly hides."""
+
 BLIND_FOR = 1.5
 """Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
 
@@ -739,11 +742,13 @@ class Tracker:
         """Add the missing parts to one of the things that have rested for a while; return what was merged."""
         assert self._reference is not None and self._view is not None
         limits, reference, view = self.settings, self._reference, self._view
+        moves = at - self._moved_at < UNSTEADY_FOR
         ready = (
             thing
             for thing in self._things
             if not thing.active and thing.seen_at == at
-            and (not thing.completed or (thing.is_suspected and at - thing.completed_at >= CONFIRM_AFTER))
+            and (not thing.completed or (thing.is_suspected and at - thing.completed_at >= CONFIRM_AFTER)
+                 or (moves and thing.cut_off and at - thing.completed_at >= AGAIN_AFTER))
             and at - max(thing.at, thing.settled_at) >= limits.complete_after and self._is_clear(thing, hand, at)
         )  # fmt: skip
         # a moving camera leaves no time to complete all things
@@ -756,7 +761,6 @@ class Tracker:
             taken = (changes.same & (reference.owner != thing.slot)) | hand
             thing.align(image, view, taken, reference.points(own, view), self._noise)
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        moves = at - self._moved_at < UNSTEADY_FOR
         differs = ~changes.same
         if moves:  # at the edges of things, pixels are compared with those beside them
             differs |= np.linalg.norm(image.colour - reference.colour, axis=-1) > limits.colour
@@ -779,6 +783,7 @@ class Tracker:
             thing.at, thing.since = oldest.at, min(thing.since, oldest.since)
         new, revealed = seen.missing_part(), revealed_part(thing, resting, reference, view)
         thing.views += 1
+        thing.cut_off = seen.is_cut_off
         if seen.is_seen_again or (moves and seen.is_carried):  # what one view shows may be something else
             both = np.union1d(new, revealed)
             is_new = changed.ravel()[both, None]

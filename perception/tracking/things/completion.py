@@ -292,7 +292,7 @@ class FlatThing:
         self.is_carried = carrier != TABLE
         unsure = (self._owner == UNKNOWN_OWNER) | ((self._owner == TABLE) & self.is_seen_again)
         fresh = changed[self._window] & unsure & (carrier == TABLE)
-        self._strange = fresh & (self._owner == TABLE)  # in its line, but not next to it, it may be the edge of another
+        self._strange = fresh & (self._owner == TABLE)  # in its line, it may be the edge of another thing
         depth = np.where(fresh, image.depth[self._window], depth)
         shade = np.where(fresh[..., None], image.colour[self._window], shade)
         table = ((self._owner == carrier) | fresh) & (depth > 0) & np.isfinite(level)
@@ -326,6 +326,13 @@ class FlatThing:
     def is_seen_again(self) -> bool:
         """True if the thing lies on the table and has been completed before, from another view."""
         return not self.is_carried and self._views > 0
+
+    @property
+    def is_cut_off(self) -> bool:
+        """True if something before the thing hides where it may go on, so that another view may show its other end."""
+        from scipy.ndimage import binary_dilation
+
+        return self.is_seen and bool((binary_dilation(self._seed, AROUND, iterations=2) & self._hiding).any())
 
     def missing_part(self) -> NDArray[np.intp]:
         """Return the pixels of the table, or of what the thing lies on, that are parts of the thing.
@@ -368,7 +375,9 @@ class FlatThing:
     def _far_part(self, known: Mask) -> Mask:
         from scipy.ndimage import binary_dilation, binary_propagation
 
-        beyond = self._line & self._candidate & self._alike & ~self._strange
+        hiders = np.unique(self._owner[binary_dilation(known, AROUND, iterations=2) & self._hiding])
+        edges = binary_dilation(self._others & ~np.isin(self._owner, hiders), AROUND, iterations=3)
+        beyond = self._line & self._candidate & self._alike & ~(self._strange & edges)
         far: Mask = binary_propagation(known, AROUND, known | self._hiding | beyond) & beyond
         far &= ~binary_dilation(known, AROUND, iterations=2)
         return far if far.sum() >= MIN_FAR_PART else np.zeros_like(known)
