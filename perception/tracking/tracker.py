@@ -620,6 +620,8 @@ class Tracker:
                     continue
                 if thing.found:
                     self._carry(thing)
+                above = not self._outline.beyond(thing.pose[None, :2, 3])[0]
+                thing.out_of_view |= bool(above and thing.is_leaving(view, seconds))
                 thing.lost()
                 continue
             thing.moved_to(found.pose, at, fit)
@@ -730,7 +732,8 @@ class Tracker:
         for thing in self._things:
             if thing.active and not thing.found:
                 alone = at - max(thing.seen_at, self._hand_at)
-                if alone > limits.gone_after or at - thing.seen_at > limits.lost_after:
+                patience = limits.away_after if thing.out_of_view else limits.gone_after
+                if alone > patience or at - thing.seen_at > limits.lost_after:
                     thing.lost("gone")
                     gone.append(thing)
         self._things = [thing for thing in self._things if thing not in gone]

@@ -110,6 +110,8 @@ class Pipeline:
     """True while it is not at rest."""
     found: bool = field(default=True, init=False)
     """True if the last frame shows it."""
+    out_of_view: bool = field(default=False, init=False)
+    """True if it left the image above the table, and was not found since."""
     agreement: float = field(default=1.0, init=False)
     """Share of its visible points that agree with the last frame."""
     visible: float = field(default=1.0, init=False)
@@ -186,6 +188,25 @@ class Pipeline:
         self.pose[:3, 3] += step
         self._carried.append(self.pose[:3, 3])
         self._filter.reset(self.pose)
+
+    def is_leaving(self, view: TableView, seconds: float) -> bool:
+        """Return True if the thing is not wholly within the image where its movement leads it.
+
+        Parameters
+        ----------
+        view
+            View of the table.
+        seconds
+            Time since the last frame.
+
+        Returns
+        -------
+        bool
+            True also for a thing that the image had shown in part.
+        """
+        ahead = self._velocity * seconds
+        corners = self.oriented.corners @ self.pose[:3, :3].T + self.pose[:3, 3] + ahead
+        return len(view.pixels(corners)[0]) < len(corners)
 
     def way_from_expected(self, place: NDArray[np.float64], seconds: float) -> float:
         """Return how far a place is from where the thing is expected.
@@ -567,7 +588,7 @@ class Pipeline:
         agreement
             Share of its visible points that agree with the frame.
         """
-        self.pose, self.seen_at, self.state, self.found = pose, at, "seen", True
+        self.pose, self.seen_at, self.state, self.found, self.out_of_view = pose, at, "seen", True, False
         self.agreement = agreement
         self._carried = []
         self._places.append((at, pose[:3, 3].copy()))
