@@ -61,6 +61,9 @@ STRIP_MARGIN = 0.006
 MIN_IN_LINE = 0.6
 """Least share of the pixels of a piece that lie in the line of a thing and have its colour."""
 
+MIN_INCLUDED = 0.9
+"""Least share of the points of a piece within the box of its thing."""
+
 MAX_LENGTH = 0.28
 """Largest length in metres of a thing and a piece of it together."""
 
@@ -394,7 +397,7 @@ class FlatThing:
         -------
         list of Pipeline
             Shorter flat things in its line and of its colour that have not moved since they came. They came with it and
-            are smaller, or one of the two came into view without being set down.
+            are smaller or lie within its box, or one of the two came into view without being set down.
         """
         if not self.is_seen:
             return []
@@ -404,8 +407,9 @@ class FlatThing:
             revealed = thing.revealed or self._thing.revealed
             together = (thing.at == self._thing.at or revealed) and thing.first_rest and self._thing.first_rest
             shorter = thing.oriented.extents[0] < self._thing.oriented.extents[0]
-            smaller = own.any() and (revealed or own.sum() <= self._seed.sum())  # what was hidden may be hidden again
-            fits = together and shorter and smaller and thing.oriented.extents[2] < FLAT
+            # of a thing that was hidden, any part may be hidden now
+            smaller = revealed or own.sum() <= self._seed.sum() or self._includes(thing)
+            fits = together and shorter and own.any() and smaller and thing.oriented.extents[2] < FLAT
             if not fits or not any(self._leads_to(own, line) for line in (self._line, self._line_to(thing))):
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
@@ -414,6 +418,11 @@ class FlatThing:
             if float(np.linalg.norm(both - other)) + length <= MAX_LENGTH:
                 found.append(thing)
         return found
+
+    def _includes(self, piece: Pipeline) -> bool:
+        """Return True if most points of a piece lie within the box of the thing."""
+        points = piece.cloud.points.astype(np.float64) @ piece.pose[:3, :3].T + piece.pose[:3, 3]
+        return bool(self._thing.contains(points, self._thing.settings.margin).mean() > MIN_INCLUDED)
 
     def _leads_to(self, piece: Mask, line: Mask) -> bool:
         """Return True if a piece has the thing's colour and lies in a line that nothing seen interrupts."""

@@ -66,6 +66,9 @@ LEAST_INSIDE = 0.08
 MIN_POINTS_BEYOND = 5
 """Number of points outside its box from which the box of a thing is extended."""
 
+NEAR = 0.04
+"""Distance in metres within which the middles of a thing and of a part of it are at one place."""
+
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops to a half."""
 
@@ -143,6 +146,7 @@ class Pipeline:
         self._rest = self.pose
         self._velocity = np.zeros(3)
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
+        self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
 
     def _choose_points(self) -> None:
         """Choose the points of the thing that are compared with frames."""
@@ -188,6 +192,29 @@ class Pipeline:
         self.pose[:3, 3] += step
         self._carried.append(self.pose[:3, 3])
         self._filter.reset(self.pose)
+
+    def near_since(self, place: NDArray[np.float64], before: float) -> float:
+        """Return since when the middle of a thing that has not moved has been near a place.
+
+        Parameters
+        ----------
+        place
+            Place of shape (3,) in the table's frame, in metres.
+        before
+            Time in seconds from which parts that were added do not count.
+
+        Returns
+        -------
+        float
+            Time in seconds; infinite if it was not near.
+        """
+        since = np.inf
+        for at, middle in reversed(self._middles):
+            if at < before:
+                if np.linalg.norm(middle - place) > NEAR:
+                    break
+                since = at
+        return since
 
     def is_leaving(self, view: TableView, seconds: float) -> bool:
         """Return True if the thing is not wholly within the image where its movement leads it.
@@ -558,6 +585,7 @@ class Pipeline:
         self.pose = self.pose.copy()
         self.pose[:3, 3] = middle
         self._rest = self.pose
+        self._middles.append((self.seen_at, self.pose[:3, 3]))
         self._choose_points()
         self._filter.reset(self.pose)
 
@@ -573,6 +601,7 @@ class Pipeline:
         self.pose = self.pose.copy()
         self.pose[2, 3] = top / 2
         self._rest = self.pose
+        self._middles.append((self.seen_at, self.pose[:3, 3]))
         self._choose_points()
         self._filter.reset(self.pose)
 
