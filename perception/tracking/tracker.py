@@ -798,7 +798,7 @@ class Tracker:
             colours = reference.colour.reshape(-1, 3)[each]
             thing.extend(reference.points(each, view), colours, limits.detection.outlines)
         if merged:
-            _name_by_age(thing, merged, at)
+            thing.take_name(merged, at)
         self._things = [other for other in self._things if other not in merged]
         return tuple(merged)
 
@@ -1047,18 +1047,6 @@ class Tracker:
         self._settle(thing)
         thing.beneath = self._reference.give(pixels, thing.slot, image)
         return thing
-
-
-def _name_by_age(whole: Pipeline, merged: list[Pipeline], at: float) -> None:
-    """Give a thing that others were merged into the name by which it has been known longest at its place.
-
-    That is the name of the part whose middle has been near that of the whole for the longest time; if there is none,
-    it is the name of the oldest part.
-    """
-    place = whole.pose[:3, 3]
-    known = min([whole, *merged], key=lambda part: (part.near_since(place, at), part.at))
-    whole.id, known.id = known.id, whole.id
-    whole.at, whole.since = known.at, min(whole.since, known.since)
 
 
 def _camera_moved(changes: Changes) -> bool:

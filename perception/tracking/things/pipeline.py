@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -215,6 +216,24 @@ class Pipeline:
                     break
                 since = at
         return since
+
+    def take_name(self, parts: Sequence[Pipeline], at: float) -> None:
+        """Take the name of one of the parts that were merged into the thing, if it was known longer by that name.
+
+        That is the name of the part whose middle has been near that of the whole for the longest time; if there is
+        none, it is the name of the oldest part. The part gets the other name.
+
+        Parameters
+        ----------
+        parts
+            Things that were merged into this one.
+        at
+            Time in seconds when they were merged.
+        """
+        place = self.pose[:3, 3]
+        known = min([self, *parts], key=lambda part: (part.near_since(place, at), part.at))
+        self.id, known.id = known.id, self.id
+        self.at, self.since = known.at, min(self.since, known.since)
 
     def is_leaving(self, view: TableView, seconds: float) -> bool:
         """Return True if the thing is not wholly within the image where its movement leads it.
