@@ -179,7 +179,8 @@ def supporting_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeli
     Returns
     -------
     list of Pipeline
-        Things of its colour that came with it, below it and about its vertical axis; none if something else bears it.
+        Things of its colour that came with it, below it and about its vertical axis; none if one of them has another
+        colour.
     """
     corners = _corners(thing)
     middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
