@@ -620,8 +620,8 @@ class Tracker:
                     continue
                 if thing.found:
                     self._carry(thing)
-                above = not self._outline.beyond(thing.pose[None, :2, 3])[0]
-                thing.out_of_view |= bool(above and thing.is_leaving(view, seconds))
+                if not self._outline.beyond(thing.pose[None, :2, 3])[0]:
+                    thing.out_of_view |= thing.is_leaving(view, seconds)
                 thing.lost()
                 continue
             thing.moved_to(found.pose, at, fit)
