@@ -98,6 +98,8 @@ class TrackingSettings:
         Time of rest after which thin parts of a thing that one frame did not show are added to it.
     gone_after
         Time without a hand in view after which a thing that is not found is gone.
+    away_after
+        The same time for a thing that was carried out of the image above the table, where it may be set down.
     lost_after
         Time after which a thing that left its place and is not found is gone, also if a hand is in view.
     workers
@@ -126,6 +128,7 @@ class TrackingSettings:
     still_for: float = 0.3
     complete_after: float = 1.0
     gone_after: float = 0.8
+    away_after: float = 3.0
     lost_after: float = 6.0
     workers: int = 2
     seed: int = 0

@@ -37,6 +37,7 @@ from deixis.perception.tracking.things.completion import (
     floating_parts,
     revealed_part,
     stands_behind,
+    supporting_parts,
 )
 from deixis.perception.tracking.things.fitting import Fit, fits
 from deixis.perception.tracking.things.hands import Hands
@@ -100,11 +101,20 @@ TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
 """Largest time in seconds between the coming of a thing and of a piece of it, their distance in metres, and the least
 mean likeness of their colours in any light."""
 
+REVEALED = 0.5
+"""Least share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
+
+SET_DOWN = 1.0
+"""Time in seconds before a new thing is steady in which the hand that sets it down is near."""
+
 FILLED = 0.5
 """Least ratio of the sides of two boxes of one thing."""
 
 CONFIRM_AFTER = 0.3
 """Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
+
+AGAIN_AFTER = 1.0
+"""Time in seconds after which a moving camera may show the other end of a thing that something partly hides."""
 
 BLIND_FOR = 1.5
 """Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
@@ -210,7 +220,7 @@ class Tracker:
         limits = self.settings
         self._reference.remember(image, changes, at, limits.tolerance, self._deviation, limits.colour)
         resting = [thing for thing in self._things if not thing.active]
-        hand = self._hands.see(image, changes, self._outline, self._back, resting)
+        hand = self._hands.see(image, changes, self._outline, self._back, resting, at)
         by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
         if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
             return self._begin_anew(cloud, image, changes, at, number)
@@ -610,6 +620,8 @@ class Tracker:
                     continue
                 if thing.found:
                     self._carry(thing)
+                if not self._outline.beyond(thing.pose[None, :2, 3])[0]:
+                    thing.out_of_view |= thing.is_leaving(view, seconds)
                 thing.lost()
                 continue
             thing.moved_to(found.pose, at, fit)
@@ -720,7 +732,8 @@ class Tracker:
         for thing in self._things:
             if thing.active and not thing.found:
                 alone = at - max(thing.seen_at, self._hand_at)
-                if alone > limits.gone_after or at - thing.seen_at > limits.lost_after:
+                patience = limits.away_after if thing.out_of_view else limits.gone_after
+                if alone > patience or at - thing.seen_at > limits.lost_after:
                     thing.lost("gone")
                     gone.append(thing)
         self._things = [thing for thing in self._things if thing not in gone]
@@ -732,11 +745,13 @@ class Tracker:
         """Add the missing parts to one of the things that have rested for a while; return what was merged."""
         assert self._reference is not None and self._view is not None
         limits, reference, view = self.settings, self._reference, self._view
+        moves = at - self._moved_at < UNSTEADY_FOR
         ready = (
             thing
             for thing in self._things
             if not thing.active and thing.seen_at == at
-            and (not thing.completed or (thing.is_suspected and at - thing.completed_at >= CONFIRM_AFTER))
+            and (not thing.completed or (thing.is_suspected and at - thing.completed_at >= CONFIRM_AFTER)
+                 or (moves and thing.cut_off and at - thing.completed_at >= AGAIN_AFTER))
             and at - max(thing.at, thing.settled_at) >= limits.complete_after and self._is_clear(thing, hand, at)
         )  # fmt: skip
         # a moving camera leaves no time to complete all things
@@ -749,7 +764,6 @@ class Tracker:
             taken = (changes.same & (reference.owner != thing.slot)) | hand
             thing.align(image, view, taken, reference.points(own, view), self._noise)
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        moves = at - self._moved_at < UNSTEADY_FOR
         differs = ~changes.same
         if moves:  # at the edges of things, pixels are compared with those beside them
             differs |= np.linalg.norm(image.colour - reference.colour, axis=-1) > limits.colour
@@ -760,7 +774,8 @@ class Tracker:
 
         seen = flat()
         resting = [other for other in self._things if other is not thing and not other.active]
-        merged = [*seen.pieces(resting), *floating_parts(thing, resting)]
+        parts_below = supporting_parts(thing, resting)
+        merged = list(dict.fromkeys([*seen.pieces(resting), *floating_parts(thing, resting), *parts_below]))
         resting = [other for other in resting if other not in merged]
         parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
         if merged:
@@ -768,6 +783,7 @@ class Tracker:
             seen = flat()
         new, revealed = seen.missing_part(), revealed_part(thing, resting, reference, view)
         thing.views += 1
+        thing.cut_off = seen.is_cut_off
         if seen.is_seen_again or (moves and seen.is_carried):  # what one view shows may be something else
             both = np.union1d(new, revealed)
             is_new = changed.ravel()[both, None]
@@ -781,6 +797,8 @@ class Tracker:
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]
             thing.extend(reference.points(each, view), colours, limits.detection.outlines)
+        if merged:
+            thing.take_name(merged, at)
         self._things = [other for other in self._things if other not in merged]
         return tuple(merged)
 
@@ -959,12 +977,19 @@ class Tracker:
                     came.append(self._enter(found, cloud, own, k, at))
                     thing = self._things[-1]
                     thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
+                    thing.revealed = self._is_revealed(thing, pixels)
                     thing.beneath = reference.give(pixels, thing.slot, image)
         self._let_stand(came, image)
         reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
         if self._hand_at < at:  # else a thing that is set down may not be whole yet
             reference.tries.ravel()[free[~taken]] = np.minimum(reference.tries.ravel()[free[~taken]] + 1, MAX_TRIES)
         return tuple(came)
+
+    def _is_revealed(self, thing: Pipeline, pixels: NDArray[np.intp]) -> bool:
+        """Return True if a new thing was there before: nothing was known at its pixels, or no hand has been near."""
+        assert self._reference is not None
+        unknown = float((self._reference.owner.ravel()[pixels] == UNKNOWN_OWNER).mean())
+        return unknown > REVEALED or not self._hands.were_near(thing.pose[:3, 3], thing.reach, thing.at - SET_DOWN)
 
     def _filled(self, found: Detection, k: int) -> Pipeline | None:
         """Return the thing at rest whose box object ``k`` of a detection fills: it is the thing, which was hidden."""

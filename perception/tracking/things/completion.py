@@ -61,6 +61,9 @@ STRIP_MARGIN = 0.006
 MIN_IN_LINE = 0.6
 """Least share of the pixels of a piece that lie in the line of a thing and have its colour."""
 
+MIN_INCLUDED = 0.9
+"""Least share of the points of a piece within the box of its thing."""
+
 MAX_LENGTH = 0.28
 """Largest length in metres of a thing and a piece of it together."""
 
@@ -163,6 +166,40 @@ def floating_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline
     return found
 
 
+def supporting_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline]:
+    """Return the things that are the stem and the foot of one that seems to float, such as the bowl of a wine glass.
+
+    Parameters
+    ----------
+    thing
+        Thing at rest.
+    others
+        Other things at rest.
+
+    Returns
+    -------
+    list of Pipeline
+        Things of its colour that came with it, below it and about its vertical axis; none if one of them has another
+        colour.
+    """
+    corners = _corners(thing)
+    middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
+    if not thing.first_rest or bottom < MIN_LIFTED:
+        return []
+    radius = thing.oriented.extents[0] / 2 + STRIP_MARGIN
+    found = []
+    for other in others:
+        ends = _corners(other)
+        aside = float(np.linalg.norm(ends.mean(axis=0)[:2] - middle[:2])) + other.oriented.extents[0] / 2
+        if not (other.first_rest and other.at == thing.at and aside < radius and ends[:, 2].max() < bottom + BEYOND):
+            continue
+        tints = other.cloud.colours
+        if tints is None or thing.likeness(tints.astype(np.float64), np.inf).mean() < MIN_HANDLE_LIKENESS:
+            return []
+        found.append(other)
+    return found
+
+
 def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage, view: TableView) -> bool:
     """Return True if a thing that seems to float stands on the table, with its foot behind something.
 
@@ -259,7 +296,7 @@ class FlatThing:
         self.is_carried = carrier != TABLE
         unsure = (self._owner == UNKNOWN_OWNER) | ((self._owner == TABLE) & self.is_seen_again)
         fresh = changed[self._window] & unsure & (carrier == TABLE)
-        self._strange = fresh & (self._owner == TABLE)  # in its line, but not next to it, it may be the edge of another
+        self._strange = fresh & (self._owner == TABLE)  # in its line, it may be the edge of another thing
         depth = np.where(fresh, image.depth[self._window], depth)
         shade = np.where(fresh[..., None], image.colour[self._window], shade)
         table = ((self._owner == carrier) | fresh) & (depth > 0) & np.isfinite(level)
@@ -293,6 +330,13 @@ class FlatThing:
     def is_seen_again(self) -> bool:
         """True if the thing lies on the table and has been completed before, from another view."""
         return not self.is_carried and self._views > 0
+
+    @property
+    def is_cut_off(self) -> bool:
+        """True if something before the thing hides where it may go on, so that another view may show its other end."""
+        from scipy.ndimage import binary_dilation
+
+        return self.is_seen and bool((binary_dilation(self._seed, AROUND, iterations=2) & self._hiding).any())
 
     def missing_part(self) -> NDArray[np.intp]:
         """Return the pixels of the table, or of what the thing lies on, that are parts of the thing.
@@ -335,7 +379,9 @@ class FlatThing:
     def _far_part(self, known: Mask) -> Mask:
         from scipy.ndimage import binary_dilation, binary_propagation
 
-        beyond = self._line & self._candidate & self._alike & ~self._strange
+        hiders = np.unique(self._owner[binary_dilation(known, AROUND, iterations=2) & self._hiding])
+        edges = binary_dilation(self._others & ~np.isin(self._owner, hiders), AROUND, iterations=3)
+        beyond = self._line & self._candidate & self._alike & ~(self._strange & edges)
         far: Mask = binary_propagation(known, AROUND, known | self._hiding | beyond) & beyond
         far &= ~binary_dilation(known, AROUND, iterations=2)
         return far if far.sum() >= MIN_FAR_PART else np.zeros_like(known)
@@ -351,16 +397,20 @@ class FlatThing:
         Returns
         -------
         list of Pipeline
-            Shorter and smaller flat things in its line and of its colour, which came with it and have not moved since.
+            Shorter flat things in its line and of its colour that have not moved since they came. They came with it and
+            are smaller or lie within its box, or one of the two came into view without being set down.
         """
         if not self.is_seen:
             return []
         found = []
         for thing in things:
             own = self._owner == thing.slot
-            together = thing.at == self._thing.at and thing.first_rest and self._thing.first_rest
+            revealed = thing.revealed or self._thing.revealed
+            together = (thing.at == self._thing.at or revealed) and thing.first_rest and self._thing.first_rest
             shorter = thing.oriented.extents[0] < self._thing.oriented.extents[0]
-            fits = together and shorter and 0 < own.sum() <= self._seed.sum() and thing.oriented.extents[2] < FLAT
+            # of a thing that was hidden, any part may be hidden now
+            smaller = revealed or own.sum() <= self._seed.sum() or self._includes(thing)
+            fits = together and shorter and own.any() and smaller and thing.oriented.extents[2] < FLAT
             if not fits or not any(self._leads_to(own, line) for line in (self._line, self._line_to(thing))):
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
@@ -369,6 +419,11 @@ class FlatThing:
             if float(np.linalg.norm(both - other)) + length <= MAX_LENGTH:
                 found.append(thing)
         return found
+
+    def _includes(self, piece: Pipeline) -> bool:
+        """Return True if most points of a piece lie within the box of the thing."""
+        points = piece.cloud.points.astype(np.float64) @ piece.pose[:3, :3].T + piece.pose[:3, 3]
+        return bool(self._thing.contains(points, self._thing.settings.margin).mean() > MIN_INCLUDED)
 
     def _leads_to(self, piece: Mask, line: Mask) -> bool:
         """Return True if a piece has the thing's colour and lies in a line that nothing seen interrupts."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable
 
 import numpy as np
@@ -30,6 +31,9 @@ MAX_CHANGE = 0.06
 LOW = 0.03
 """Height in metres above the table below which a surface that comes into view may lie on it."""
 
+MEMORY = 30.0
+"""Time in seconds for which the places of hands are kept."""
+
 REACH = 0.12
 """Distance in metres from the end of a hand within which it holds the side of a thing."""
 
@@ -39,6 +43,7 @@ class Hands:
 
     def __init__(self) -> None:
         self._tips = np.zeros((0, 3))
+        self._past: deque[tuple[float, NDArray[np.float64]]] = deque()
         self._before = np.zeros((0, 3))
         self._steps = np.zeros((0, 3))
 
@@ -49,6 +54,7 @@ class Hands:
         outline: Outline,
         back: NDArray[np.float64],
         resting: Iterable[Pipeline] = (),
+        at: float = 0.0,
     ) -> NDArray[np.bool_]:
         """Find the hands in a frame.
 
@@ -65,6 +71,8 @@ class Hands:
             Transform (4, 4) from the frame of the cloud to that of the table.
         resting
             Things at rest.
+        at
+            Time of the frame in seconds.
 
         Returns
         -------
@@ -89,6 +97,10 @@ class Hands:
         from_outside = np.bincount(owner, root, minlength=count + 1) >= MIN_OUTSIDE_PIXELS
         from_outside[0] = False
         self._move_to([_tip(points[owner == k], root[owner == k]) for k in np.flatnonzero(from_outside)])
+        while self._past and self._past[0][0] < at - MEMORY:
+            self._past.popleft()
+        if len(self._tips):
+            self._past.append((at, self._tips))
         if not from_outside.any():
             return np.zeros(of.shape, np.bool_)
         around = binary_dilation(from_outside[of], np.ones((3, 3)), iterations=HAND_MARGIN)
@@ -117,6 +129,26 @@ class Hands:
             return None
         step: NDArray[np.float64] = self._steps[int(np.nanargmin(away))]
         return step
+
+    def were_near(self, place: NDArray[np.float64], size: float, since: float) -> bool:
+        """Return True if a hand has been so near that it may have set a thing down.
+
+        Parameters
+        ----------
+        place
+            Middle of the thing, shape (3,), in metres.
+        size
+            Distance in metres from the middle to the farthest side of the thing.
+        since
+            Time in seconds from which the places of hands count.
+
+        Returns
+        -------
+        bool
+            False if the thing must have been there before.
+        """
+        tips = np.concatenate([np.zeros((0, 3)), *(tips for at, tips in self._past if at >= since)])
+        return bool((np.linalg.norm(tips - place, axis=1) < size + REACH).any())
 
     def _move_to(self, tips: list[NDArray[np.float64]]) -> None:
         """Take the ends of the hands in a new frame; the step of one that was not seen before is NaN."""

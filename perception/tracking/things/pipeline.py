@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -66,6 +67,9 @@ LEAST_INSIDE = 0.08
 MIN_POINTS_BEYOND = 5
 """Number of points outside its box from which the box of a thing is extended."""
 
+NEAR = 0.04
+"""Distance in metres within which the middles of a thing and of a part of it are at one place."""
+
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops to a half."""
 
@@ -110,6 +114,8 @@ class Pipeline:
     """True while it is not at rest."""
     found: bool = field(default=True, init=False)
     """True if the last frame shows it."""
+    out_of_view: bool = field(default=False, init=False)
+    """True if it left the image above the table, and was not found since."""
     agreement: float = field(default=1.0, init=False)
     """Share of its visible points that agree with the last frame."""
     visible: float = field(default=1.0, init=False)
@@ -121,8 +127,12 @@ class Pipeline:
     """True if it was completed during its present rest, from the present side of the table."""
     completed_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it was last completed."""
+    cut_off: bool = field(default=False, init=False)
+    """True if something hid where it may go on when it was last completed."""
     views: int = field(default=0, init=False)
     """Number of views from which it was completed during its present rest."""
+    revealed: bool = field(default=False, init=False)
+    """True if it came into view where nothing was known, so that it may be a part of a thing that is older."""
     rest: int = field(default=0, init=False)
     """Number of its present or last rest, which no other rest of any thing has."""
     particles: int = field(default=0, init=False)
@@ -137,6 +147,7 @@ class Pipeline:
         self._rest = self.pose
         self._velocity = np.zeros(3)
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
+        self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
 
     def _choose_points(self) -> None:
         """Choose the points of the thing that are compared with frames."""
@@ -182,6 +193,66 @@ class Pipeline:
         self.pose[:3, 3] += step
         self._carried.append(self.pose[:3, 3])
         self._filter.reset(self.pose)
+
+    def near_since(self, place: NDArray[np.float64], before: float) -> float:
+        """Return since when the middle of a thing that has not moved has been near a place.
+
+        Parameters
+        ----------
+        place
+            Place of shape (3,) in the table's frame, in metres.
+        before
+            Time in seconds from which parts that were added do not count.
+
+        Returns
+        -------
+        float
+            Time in seconds; infinite if it was not near.
+        """
+        since = np.inf
+        for at, middle in reversed(self._middles):
+            if at < before:
+                if np.linalg.norm(middle - place) > NEAR:
+                    break
+                since = at
+        return since
+
+    def take_name(self, parts: Sequence[Pipeline], at: float) -> None:
+        """Take the name of one of the parts that were merged into the thing, if it was known longer by that name.
+
+        That is the name of the part whose middle has been near that of the whole for the longest time; if there is
+        none, it is the name of the oldest part. The part gets the other name.
+
+        Parameters
+        ----------
+        parts
+            Things that were merged into this one.
+        at
+            Time in seconds when they were merged.
+        """
+        place = self.pose[:3, 3]
+        known = min([self, *parts], key=lambda part: (part.near_since(place, at), part.at))
+        self.id, known.id = known.id, self.id
+        self.at, self.since = known.at, min(self.since, known.since)
+
+    def is_leaving(self, view: TableView, seconds: float) -> bool:
+        """Return True if the thing is not wholly within the image where its movement leads it.
+
+        Parameters
+        ----------
+        view
+            View of the table.
+        seconds
+            Time since the last frame.
+
+        Returns
+        -------
+        bool
+            True also for a thing that the image had shown in part.
+        """
+        ahead = self._velocity * seconds
+        corners = self.oriented.corners @ self.pose[:3, :3].T + self.pose[:3, 3] + ahead
+        return len(view.pixels(corners)[0]) < len(corners)
 
     def way_from_expected(self, place: NDArray[np.float64], seconds: float) -> float:
         """Return how far a place is from where the thing is expected.
@@ -533,6 +604,7 @@ class Pipeline:
         self.pose = self.pose.copy()
         self.pose[:3, 3] = middle
         self._rest = self.pose
+        self._middles.append((self.seen_at, self.pose[:3, 3]))
         self._choose_points()
         self._filter.reset(self.pose)
 
@@ -548,6 +620,7 @@ class Pipeline:
         self.pose = self.pose.copy()
         self.pose[2, 3] = top / 2
         self._rest = self.pose
+        self._middles.append((self.seen_at, self.pose[:3, 3]))
         self._choose_points()
         self._filter.reset(self.pose)
 
@@ -563,7 +636,7 @@ class Pipeline:
         agreement
             Share of its visible points that agree with the frame.
         """
-        self.pose, self.seen_at, self.state, self.found = pose, at, "seen", True
+        self.pose, self.seen_at, self.state, self.found, self.out_of_view = pose, at, "seen", True, False
         self.agreement = agreement
         self._carried = []
         self._places.append((at, pose[:3, 3].copy()))

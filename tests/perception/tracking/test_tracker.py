@@ -18,7 +18,7 @@ from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.frames.image import image_of, optics_of
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import Situation
-from deixis.perception.tracking.table.reference import TABLE
+from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER
 from deixis.perception.tracking.tracker import Tracker
 
 pytest.importorskip("open3d")
@@ -243,3 +243,28 @@ def test_tries_count_only_when_no_hand_is_in_view(is_hand_in_view: bool) -> None
         tracker._hand_at = 0.5 if is_hand_in_view else 0.0
         assert tracker._segment(frame.cloud, image, tracker._compare(image, 0.5), table, 0.5) == ()
         assert (reference.tries.ravel()[table] == (0 if is_hand_in_view else 1)).all()
+
+
+@pytest.mark.parametrize(("is_out_of_view", "gone_at"), [(False, 1.0), (True, 3.5)])
+def test_thing_carried_out_of_the_image_is_kept_longer(is_out_of_view: bool, gone_at: float) -> None:
+    with Tracker(HALF) as tracker:
+        tracker.update(moved_mug()[0][0].cloud, 0.0)
+        thing = tracker._things[0]
+        tracker._start(thing)
+        thing.lost()
+        thing.out_of_view = is_out_of_view
+        gone = [at for at in np.arange(0.5, 4.0, 0.5) if tracker._let_go(at)]
+        assert gone == [gone_at] and thing not in tracker._things
+
+
+def test_new_thing_far_from_hands_was_there_before() -> None:
+    with Tracker(HALF) as tracker:
+        tracker.update(moved_mug()[0][0].cloud, 0.0)
+        thing, reference = tracker._things[0], tracker._reference
+        assert reference is not None
+        pixels = np.flatnonzero(reference.owner == TABLE)[:40]
+        assert tracker._is_revealed(thing, pixels)
+        tracker._hands._past.append((0.0, thing.pose[None, :3, 3]))
+        assert not tracker._is_revealed(thing, pixels), "a hand may have set it down"
+        reference.owner.ravel()[pixels] = UNKNOWN_OWNER
+        assert tracker._is_revealed(thing, pixels), "nothing was known there"

@@ -10,7 +10,13 @@ from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, table_view
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
-from deixis.perception.tracking.things.completion import FlatThing, floating_parts, revealed_part, stands_behind
+from deixis.perception.tracking.things.completion import (
+    FlatThing,
+    floating_parts,
+    revealed_part,
+    stands_behind,
+    supporting_parts,
+)
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 SHAPE = 60, 120
@@ -122,6 +128,60 @@ def test_pieces_of_one_thing_are_found(is_hidden: bool) -> None:
     assert flat(handle, on).pieces([tines]) == [tines]
     assert flat(handle, on).pieces([later]) == [], "it was set down later"
     assert flat(tines, on).pieces([handle]) == [], "the larger piece is the thing"
+
+
+def test_end_that_came_into_view_later_is_a_piece() -> None:
+    on = table()
+    lay(on, np.s_[29:32, 40:45], STEEL, 1)  # most of it is hidden by now
+    lay(on, np.s_[15:45, 45:55], BLUE, 3, 0.15)
+    lay(on, np.s_[28:33, 55:75], STEEL, 2)
+    handle, blade = thing_at(np.s_[29:32, 20:45], 1), thing_at(np.s_[28:33, 55:75], 2)
+    blade.at = 3.0
+    assert flat(handle, on).pieces([blade]) == [], "it was set down later"
+    blade.revealed = True
+    assert flat(handle, on).pieces([blade]) == [blade] and flat(blade, on).pieces([handle]) == []
+
+
+def test_piece_within_the_box_of_a_thing_may_be_larger_in_view() -> None:
+    on = table()
+    lay(on, np.s_[29:32, 30:40], STEEL, 1)
+    lay(on, np.s_[29:32, 40:60], STEEL, 2)
+    blade = thing_at(np.s_[29:32, 40:60], 2)
+    assert flat(thing_at(np.s_[29:32, 30:55], 1), on).pieces([blade]) == []
+    assert flat(thing_at(np.s_[29:32, 30:62], 1), on).pieces([blade]) == [blade]
+
+
+@pytest.mark.parametrize(("colour", "above", "aside", "is_one"), [
+    (BLUE, 0.1, 0.0, True), (STEEL, 0.1, 0.0, False), (BLUE, 0.01, 0.0, False), (BLUE, 0.1, 0.1, False),
+])  # fmt: skip
+def test_stem_and_foot_are_parts_of_the_bowl_above(
+    colour: tuple[int, int, int], above: float, aside: float, is_one: bool
+) -> None:
+    bowl, foot = thing_at(np.s_[20:40, 50:70], 1, BLUE), thing_at(np.s_[22:38, 52:68], 2, colour)
+    bowl.pose = bowl.pose.copy()
+    bowl.pose[:3, 3] += aside, 0.0, above
+    assert supporting_parts(bowl, [foot]) == ([foot] if is_one else [])
+    assert supporting_parts(foot, [bowl]) == []
+
+
+@pytest.mark.parametrize("is_edge", [False, True])
+def test_far_end_in_a_later_view_is_not_the_edge_of_another(is_edge: bool) -> None:
+    on, now = table(), table()
+    for each in (on, now):
+        lay(each, np.s_[29:32, 20:50], STEEL, 1)
+        lay(each, np.s_[15:45, 50:60], BLUE, 3, 0.15)
+    lay(now, np.s_[29:32, 60:63], STEEL, TABLE)
+    if is_edge:
+        lay(on, np.s_[29:32, 63:80], STEEL, 4)
+        lay(now, np.s_[29:32, 63:80], STEEL, 4)
+    seen = flat(thing_at(np.s_[29:32, 20:50], 1), on, now, views=1)
+    assert seen.is_cut_off and set((seen.missing_part() % SHAPE[1]).tolist()) == (set() if is_edge else {60, 61, 62})
+
+
+def test_thing_that_nothing_hides_is_not_cut_off() -> None:
+    on = table()
+    lay(on, np.s_[29:32, 20:50], STEEL, 1)
+    assert not flat(thing_at(np.s_[29:32, 20:50], 1), on).is_cut_off
 
 
 @pytest.mark.parametrize(("rows", "is_piece"), [(np.s_[26:35], True), (np.s_[32:41], False)])

@@ -77,3 +77,14 @@ def test_known_thing_that_comes_into_view_is_not_a_hand() -> None:
     )
     assert not Hands().see(image, changes_at(surface, UNKNOWN), Outline(), BACK, [bottle]).any()
     assert Hands().see(image, changes_at(surface, NEARER), Outline(), BACK, [bottle]).any(), "something is before it"
+
+
+def test_thing_far_from_all_hands_was_not_set_down() -> None:
+    hands = Hands()
+    image, arm = image_of_arm(20)
+    hands.see(image, changes_at(arm), Outline(), BACK, at=2.0)
+    hands.see(image, changes_at(np.zeros_like(arm)), Outline(), BACK, at=3.0)
+    tip = image.places(np.array([(ROWS - 18) * COLUMNS + 40]), BACK)[0]
+    assert hands.were_near(tip, 0.05, since=1.5)
+    assert not hands.were_near(tip + np.array([0.3, 0.0, 0.0]), 0.05, since=1.5)
+    assert not hands.were_near(tip, 0.05, since=2.5), "the hand had gone"

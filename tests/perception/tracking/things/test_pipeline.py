@@ -65,3 +65,24 @@ def test_parts_are_confirmed_by_a_second_view() -> None:
     assert not napkin.is_suspected and not napkin.confirms(end).any() and napkin.is_suspected
     assert not napkin.confirms(end + np.array([0.0, 0.05, 0.0])).any(), "the second view shows something else"
     assert napkin.confirms(end + np.array([0.0, 0.002, 0.0])).all() and not napkin.is_suspected
+
+
+@pytest.mark.parametrize(("speed", "leaves"), [(0.0, False), (0.5, True), (-0.5, False)])
+def test_thing_leaves_the_image_where_its_movement_leads_it(speed: float, leaves: bool) -> None:
+    napkin = flat_thing()
+    napkin._velocity = np.array([speed, 0.0, 0.0])
+    assert napkin.is_leaving(table_view(OPTICS, BACK, SHAPE), 0.2) == leaves, "the image ends 5 cm to the right"
+
+
+def test_merged_thing_keeps_the_name_it_was_longest_known_by() -> None:
+    options = TrackingSettings().detection.outlines
+    end = flat_thing().pose[:3, 3] + np.random.default_rng(2).uniform((0.05, -0.05, 0), (0.15, 0.05, 0.005), (500, 3))
+    tints = np.tile(RED, (500, 1)).astype(np.float32)
+    for away, at, name in ((0.05, 0.0, "t2"), (0.15, 0.0, "t1"), (0.05, 3.0, "t2"), (0.15, -3.0, "t2")):
+        whole, part = flat_thing(), flat_thing()
+        part.id, part.at, part._middles = "t2", at, [(at, whole.pose[:3, 3] + np.array([away, 0.0, 0.0]))]
+        whole.seen_at = 5.0
+        whole.extend(end, tints, options)  # its middle moves by 5 cm
+        whole.take_name([part], 5.0)
+        assert {whole.id, part.id} == {"t1", "t2"} and whole.id == name
+        assert whole.at == (at if name == "t2" else 0.0)
