@@ -10,15 +10,18 @@ from dataclasses import dataclass
 from deixis.grammar.english.tree import Degree, Span
 from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
 from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
     DETERMINERS,
+    HEDGES,
     IS_FORMS,
+    MODALS,
     ORDINALS,
     PAST_FORMS,
     POSSESSIVES,
     PRONOUNS,
     TYPOS,
 )
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, prepositions
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
 from deixis.grammar.english.vocabulary.verbs import PUT_VERBS, verb_forms
 
@@ -414,6 +417,51 @@ def _without_corrected(words: list[Word]) -> None:
             return
 
 
+def _with_commands_after_places(words: list[Word]) -> None:
+    """Read *to the right we place the cup* and *on those place the cup* as *to the right, place the cup*."""
+    if all(word.norm != "than" for word in words):
+        for i in range(len(words) - 3, -1, -1):
+            after = [word.norm for word in words[i + 1 : i + 4]]
+            if words[i].norm in ("further", "farther") and after in (["to", "the", "left"], ["to", "the", "right"]):
+                del words[i]
+    for verb in range(len(words) - 2, 1, -1):
+        following = words[verb + 1].norm
+        commands = words[verb].norm in PUT_VERBS and (following in DETERMINERS or following in POSSESSIVES)
+        if not commands:
+            continue
+        end = verb
+        while end > 1 and words[end - 1].norm in ("now", "should", "then"):
+            end -= 1
+        if words[end - 1].norm in ("you", "we"):
+            end -= 1
+        elif end < verb:
+            continue
+        told = end < verb
+        first = end - 1
+        while first > 0 and words[first - 1].norm not in (";", ":", ".", "and", "then", "("):
+            first -= 1
+        opening = [word.norm for word in words[first:end] if word.norm not in ADVERBS]
+        while opening and (opening[0] in HEDGES or degree_of(opening[0])[1] is not Degree.PLAIN):
+            del opening[0]
+        rest = [word.norm for word in words[verb + 1 :]]
+        rest = rest[: next((i for i, norm in enumerate(rest) if norm in (",", ";", ":", ".")), len(rest))]
+        place = opening[:1] != [] and (opening[0] in _FRONTED or opening[0] in DIRECTION_WORDS) and len(opening) > 1
+        if not place or not _SAYS_MORE.isdisjoint(opening) or not IS_FORMS.isdisjoint(rest):
+            continue
+        marked = words[end - 1].norm == ","
+        if not told and (marked or words[end - 1].norm not in _POINTING | PLACE_NOUNS.keys()):
+            continue
+        comma = [] if marked else [Word(",", ",", words[end - 1].end, words[end - 1].end, False)]
+        words[end:verb] = comma
+
+
+_FRONTED = word_set("on at in to above below beneath under behind beside between next near over across opposite inside")
+"""Prepositions with which a place begins that stands before a command."""
+_POINTING = frozenset({"this", "that", "these", "those"})
+_SAYS_MORE = IS_FORMS | MODALS.keys() | word_set("if when while before after until you we they who which order")
+"""Words of clauses, and of what is no place."""
+
+
 def _says_no_place(words: str) -> bool:
     """Return True for a list of properties in brackets: *(chrome, lead frayed)*."""
     said = words.casefold().replace(",", " ").split()
@@ -480,6 +528,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _without_cleft(found)
     _deny_contrasts(found)
     _without_corrected(found)
+    _with_commands_after_places(found)
     for i in range(len(found) - 2, -1, -1):
         if found[i].norm in ("'ve", "have", "has", "'s", "'d") and found[i + 1].norm == "got":
             found[i].norm = "has" if found[i].norm in ("has", "'s") else "have"
