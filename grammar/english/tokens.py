@@ -117,6 +117,9 @@ _STEP = re.compile(
     r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
     re.I,
 )
+_BARE_STEP = re.compile(r"[ \t]*(\d{1,2})[ \t]+(?=([A-Za-z]+))")
+MAX_ITEM = 500
+"""Number of characters in which the next item of a numbered list begins."""
 
 
 @dataclass(slots=True)
@@ -164,7 +167,7 @@ def sentences(text: str) -> Iterator[RawSentence]:
         if start >= length:
             return
         if start == 0 or text[start - 1] == "\n" or not text[:start].rsplit("\n", 1)[-1].strip():
-            mark = _STEP.match(text, start)
+            mark = _step(text, start)
             if mark is not None and mark.end() < length and text[mark.end() : mark.end() + 1] != "\n":
                 step = mark[0].strip()
                 start = mark.end()
@@ -178,6 +181,30 @@ def sentences(text: str) -> Iterator[RawSentence]:
         start = max(end, start + 1)
 
 
+def _step(text: str, start: int) -> re.Match[str] | None:
+    """Return the mark of a list item that begins here; a number without a full stop counts as its neighbours do."""
+    mark = _STEP.match(text, start)
+    if mark is not None:
+        return mark
+    mark = _BARE_STEP.match(text, start)
+    if mark is None or not _commands(mark):
+        return None
+    following = text[start : start + MAX_ITEM].split("\n")[1:]
+    earlier = text[max(0, start - MAX_ITEM) : start].split("\n")[::-1]
+    for lines, number in ((following, int(mark[1]) + 1), (earlier, int(mark[1]) - 1)):
+        other = _BARE_STEP.match(next((line for line in lines if line.strip()), ""))
+        if other is not None and int(other[1]) == number and _commands(other):
+            return mark
+    return None
+
+
+def _commands(mark: re.Match[str]) -> bool:
+    """Return True if the word after the number of a list item is a verb in its base form."""
+    verb = mark[2].casefold()
+    form = verb_forms().get(verb)
+    return verb in PUT_VERBS or (form is not None and form.form == "base")
+
+
 def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
     for match in _ENDS.finditer(text, start):
         mark = match[0]
@@ -188,7 +215,7 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
                 return match.end(), _is_heading(line) or (more and _is_title(line))
             line = text[start : match.start()]
             following = text[match.end() : match.end() + 80]
-            if _STEP.match(following) or line.rstrip().endswith((":", ";")) or _is_heading(line.rsplit("\n", 1)[-1]):
+            if _step(text, match.end()) or line.rstrip().endswith((":", ";")) or _is_heading(line.rsplit("\n", 1)[-1]):
                 return match.end(), _is_heading(line)
             if "\n" not in line and following[:1].isupper() and len(line) < 60 and not line.rstrip().endswith(","):
                 return match.end(), False

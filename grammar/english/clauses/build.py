@@ -866,6 +866,8 @@ _HEIGHTS = {
 
 
 _SHARING = DIRECTION_RELATIONS | {"opposite", "next_to", "far", "along", "against"}
+_ALIGNING = frozenset({"parallel", "perpendicular", "aligned", "level_with"})
+"""Relations after a direction that has their object: *above and parallel to the plate*."""
 
 
 def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tuple[Predicate, ...]]]:
@@ -886,7 +888,7 @@ def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tu
             continue
         after = made[i + 1][1][0] if i + 1 < len(made) and made[i + 1][1] and made[i + 1][0] in ("and", "or") else None
         before = made[i - 1][1][0] if i and made[i - 1][1] and link in ("and", ",", "or") else None
-        if after is not None and after.arguments and after.relation in _SHARING and len(after.arguments) == 1:
+        if after is not None and after.arguments and after.relation in _SHARING | _ALIGNING:
             made[i] = (link, (replace(this, arguments=after.arguments),))
         elif before is not None and before.arguments and before.relation in _SHARING and len(before.arguments) == 1:
             made[i] = (link, (replace(this, arguments=before.arguments),))
