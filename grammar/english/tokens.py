@@ -88,12 +88,13 @@ _DENIALS = {
     ("no", "longer"): "never", ("with", "no"): "without", ("far", "from", "being"): "not", ("not", "a", "single"): "no",
     ("not", "anywhere", "near"): "not near", ("not", "anywhere", "close", "to"): "not near",
     ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
+    ("has", "become"): "is", ("have", "become"): "are",
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("'d", "better"): "should", ("had", "better"): "should",
 }  # fmt: skip
-"""Phrases that deny what follows them, or advise it, with the words that say the same."""
+"""Phrases that deny what follows them, advise it or say how it became, with the words that say the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _FORMS_OF_ADDRESS = word_set("mr mrs ms dr st prof capt rev sgt lt col gen")

@@ -37,7 +37,7 @@ from deixis.grammar.english.tree import (
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.function_words import PERSONS
-from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SUBSTANCES, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, GAPS, HOLDERS, PARTS, SUBSTANCES, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
@@ -390,7 +390,8 @@ class Builder(Transformer[Any, Built]):
         side = PLACE_NOUNS.get(noun.phrase.head, "")
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
-            return (Predicate(relation, (), span, value=aim, positive=relator.positive), *extra)
+            towards = (relator.preposition.phrase,) if relator.preposition.phrase in _TOWARDS else ()
+            return (Predicate(relation, (), span, value=aim, adverbs=towards, positive=relator.positive), *extra)
         own = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("it", "he", "she", "they")
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
@@ -477,7 +478,8 @@ class Builder(Transformer[Any, Built]):
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
         moving = written == "over" or written in AWAY_FROM or written.startswith(("from ", "to the "))
-        kept = shaped or moving or "side of" in written
+        towards = written in _TOWARDS and is_place(noun.phrase)
+        kept = shaped or moving or towards or "side of" in written
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
@@ -741,7 +743,9 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     if last is None or part is None:
         return noun, ()
     own = part.owner is not None and part.owner.pronoun in ("it", "they")
-    if not own and not (part.owner is None and part.determiner == "the" and last.relation in ("facing", "pointing")):
+    bare = part.determiner is None and part.plural and last_word(part.head) in AIMED_PARTS
+    aimed = part.owner is None and (part.determiner == "the" or bare) and last.relation in ("facing", "pointing")
+    if not own and not aimed:
         return noun, ()
     kept = phrase.predicates[:-1]
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
@@ -832,6 +836,7 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
 _SHARING_PLACES = frozenset({"along with", "together with"})
 """Prepositions of a thing that is where the subject is: *the gloves are on the shelf, along with the goggles*."""
 
+_TOWARDS = frozenset({"toward", "towards"})
 _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
 
 

@@ -13,7 +13,7 @@ from deixis.grammar.english.tree import (
     Predicate,
     Span,
 )
-from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
@@ -432,7 +432,10 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
     if member.head in GAPS:
         return []
     for predicate in member.predicates:
-        if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
+        aimed = predicate.relation in ("facing", "pointing") and last_word(member.head) in AIMED_PARTS
+        if aimed and any(argument.pronoun == "it" for argument in predicate.arguments):
+            found.append((predicate, False))  # 'right of the plate with the blade facing it'
+        elif any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
             one = any(argument.pronoun == "it" and not argument.head for argument in predicate.arguments)
             predicate = replace(predicate, of_one=one)
             found.append((predicate, True))

@@ -513,7 +513,8 @@ class Discourse(Statements):
             ):
                 self._add("parallel_each_other", (last,), ())
             else:
-                self._predicate(last, predicate, [])
+                kept = tuple(adverb for adverb in predicate.adverbs if adverb not in ("toward", "towards"))
+                self._predicate(last, replace(predicate, adverbs=kept), [])
         return True
 
     def _is_thing(self, subject: NounPhrase, predicates: tuple[Predicate, ...], clause: Clause) -> bool:
