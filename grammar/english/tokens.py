@@ -490,6 +490,22 @@ _SAYS_MORE = IS_FORMS | MODALS.keys() | word_set("if when while before after unt
 """Words of clauses, and of what is no place."""
 
 
+DOUBT = re.compile(
+    r"\s*if\s+(?:in\s+doubt\s*,"
+    r"|you(?:\s+are|['\u2019]re|\s+were)?\s*(?:not|\s(?:are|were)n['\u2019]t|ever\s+un|un)\s*(?:sure|certain)\b[^,.;]*,"
+    r"|you\s+(?:ever\s+)?(?:forget|(?:do\s+not|don['\u2019]t)\s+(?:know|remember)|mix\s+up)\s+(?:where|which|how)\b[^,.;]*,)",
+    re.I,
+)
+"""Beginning of a sentence that is no condition of a place: *if in doubt, …*, *if you are not sure where it goes, …*."""
+
+
+def _without_doubts_of_the_reader(text: str, span: Span, words: list[Word]) -> None:
+    """Leave out *if in doubt* and its like at the beginning of a sentence."""
+    doubt = DOUBT.match(text, *span)
+    if doubt is not None:
+        words[:] = [word for word in words if word.start >= doubt.end()]
+
+
 def _says_no_place(words: str) -> bool:
     """Return True for a list of properties in brackets: *(chrome, lead frayed)*."""
     said = words.casefold().replace(",", " ").split()
@@ -556,6 +572,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _without_cleft(found)
     _deny_contrasts(found)
     _without_corrected(found)
+    _without_doubts_of_the_reader(text, span, found)
     _with_commands_after_places(found)
     for i in range(len(found) - 2, -1, -1):
         if found[i].norm in ("'ve", "have", "has", "'s", "'d") and found[i + 1].norm == "got":

@@ -454,6 +454,9 @@ class Builder(Transformer[Any, Built]):
         if relation == "by" and noun.phrase.owner is None and last_word(noun.phrase.head) in DEGREES:
             misunderstood(span, f"'{noun.phrase.head}' says how much, not where")
             return (*noun.phrase.predicates, *extra)  # 'turned by ninety degrees'
+        if relation in ("inside", "at") and last_word(noun.phrase.head) in _OCCASIONS:
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")
+            return (*noun.phrase.predicates, *extra)  # 'in a festive meal', 'at one time'
         manner = relation == "by" and noun.phrase.head in _MANNERS
         unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
         if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:
@@ -857,6 +860,10 @@ _AMOUNTS = word_set(
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 
 
+_OCCASIONS = word_set(
+    "meal dinner lunch breakfast supper luncheon brunch concert performance ceremony wedding rehearsal time interval"
+)
+"""Nouns of what lasts or comes again, which nothing is in: *in a formal dinner*, *at equal intervals*."""
 _MANNERS = word_set(
     "value price brand theme subject author mistake default law tradition custom rule accident chance colour color size"
     " hand name age height type kind length weight shape date number order"

@@ -36,6 +36,7 @@ from deixis.grammar.english.discourse.mentions import SUPERLATIVES, _with_restri
 from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.tokens import DOUBT
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import FRONTS, GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
 from deixis.grammar.english.vocabulary.verbs import verb_forms
@@ -290,7 +291,8 @@ class Discourse(Statements):
         if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
             subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
             clause = replace(clause, predicates=(*clause.predicates, *order))
-        whole = self.text[self.references.start : self.end]
+        doubt = DOUBT.match(self.text, self.references.start, self.end)
+        whole = self.text[self.references.start if doubt is None else doubt.end() : self.end]
         unreal = REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)
         unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1]) or SAID_AFTER.search(whole)
         unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
