@@ -235,7 +235,9 @@ class Statements(Relations):
                 own = any(a.pronoun == "it" for p in phrase.predicates for a in p.arguments)
                 if own and subject.role is Role.THING:  # 'the bucket is by the hatch with the lemons beside it'
                     self.references.recent.insert(0, Focus(subject, [], None, self.how.sentence))
+                host, self.references.host = self.references.host, subject.itself
                 held = self._introduce(phrase, "with", subject)
+                self.references.host = host
                 if own and subject.role is Role.THING:
                     self.references.recent.pop(0)
                 part = (
