@@ -88,7 +88,7 @@ _DENIALS = {
     ("no", "longer"): "never", ("with", "no"): "without", ("far", "from", "being"): "not", ("not", "a", "single"): "no",
     ("not", "anywhere", "near"): "not near", ("not", "anywhere", "close", "to"): "not near",
     ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
-    ("has", "become"): "is", ("have", "become"): "are",
+    ("has", "become"): "became", ("have", "become"): "became",
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",

@@ -65,6 +65,8 @@ OPPOSITES = {
     "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
     "on": "under", "under": "on", "top": "bottom", "bottom": "top",
 }  # fmt: skip
+_ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
+"""Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
 CORNERS = frozenset({"top_left", "top_right", "bottom_left", "bottom_right"})
@@ -194,7 +196,7 @@ class References:
 
     def _noun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
         noun, last = phrase.head, last_word(phrase.head)
-        if last in ABSTRACT and noun == last:
+        if last in ABSTRACT and (noun == last or last in _ACTS):
             return self._earlier(phrase) or self._new(phrase, Role.ABSTRACT)
         if last == VIEWER or (last in PEOPLE and noun == last):
             entity = self._earlier(phrase) or self._new(phrase, Role.VIEWER if last == VIEWER else Role.PERSON)
@@ -269,7 +271,8 @@ class References:
             entity.split(count)
         elif phrase.plural:
             entity.plural, entity.single = True, lump is not None
-            plural = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
+            plural = next((w for w in words if stem in singulars(w)), None)
+            plural = plural or next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
             if plural is not None:
                 entity.written = f"{phrase.head[: -len(stem)]}{plural}".strip()
         self.entities.append(entity)

@@ -127,7 +127,7 @@ def is_material_noun(word: str) -> bool:
     return word in _MATERIAL_NOUNS
 
 
-_TOOLS = frozenset({"opener", "cleaner", "dryer", "shutter", "hotter"})
+_TOOLS = frozenset({"opener", "cleaner", "dryer", "shutter", "hotter", "topper"})
 """Nouns that look like the comparative of an adjective."""
 
 
