@@ -292,6 +292,26 @@ _HOUR = re.compile(r"(1[0-2]|[1-9])(?::[0-5]\d)?")
 """An hour of a clock face as a direction; minutes make no difference."""
 
 
+def _read_fractions(words: list[Word]) -> None:
+    """Read *1/2* and *1 1/2* before a word, which are three and four marks, as one number."""
+    for i in range(len(words) - 3, -1, -1):
+        one, slash, other = words[i : i + 3]
+        part = _DENOMINATOR.match(other.norm)
+        adjacent = one.end == slash.start and slash.end == other.start
+        if slash.norm != "/" or not adjacent or part is None or not one.norm.isdigit():
+            continue
+        if int(one.norm) >= int(part[1]) or not (part[2] or any(word.is_word for word in words[i + 3 : i + 4])):
+            continue
+        value, first = int(one.norm) / int(part[1]), i
+        if i and words[i - 1].norm.isdigit() and words[i - 1].end + 1 == one.start:
+            value, first = value + int(words[i - 1].norm), i - 1
+        number = Word(one.text, f"{value:.4g}{part[2]}", words[first].start, other.end, True)
+        words[first : i + 3] = [number]
+
+
+_DENOMINATOR = re.compile(r"(2|3|4|8|16)((?:-[a-z]+)?)$")
+
+
 def _without_cleft(words: list[Word]) -> None:
     """Read *what you see behind the box is a cup* and *all that remains is a cup* without what only introduces."""
     norms = [word.norm for word in words[:8]]
@@ -569,6 +589,7 @@ def words_of(text: str, span: Span) -> list[Word]:
         del found[ends - 1], found[0]  # the whole sentence is in parentheses
     _join_asides(text, found)
     _read_hours(found)
+    _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)
     _without_corrected(found)
