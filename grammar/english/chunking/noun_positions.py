@@ -383,9 +383,9 @@ class NounFinder:
             if norm.endswith("ed") and len(norm) > 4 and not is_adjective(norm) and norm not in ED_NOUNS:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
-        if form.form == "base" and before.isalpha() and before not in PUT_VERBS:
-            if norm in NAMED_LIKE_THINGS and self._nouns.knows(f"{before} {norm}"):
-                return True  # 'a fork and a dessert spoon above the plate'
+        named = norm in NAMED_LIKE_THINGS and form.form == "base" and before.isalpha() and before not in PUT_VERBS
+        if named and self._nouns.knows(f"{before} {norm}"):
+            return True  # 'a fork and a dessert spoon above the plate'
         if form.form == "ing":
             if norm == "setting" and before in ("place", "table") and not self.is_determiner(at + 1):
                 return True

@@ -78,10 +78,15 @@ def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
             shared = _shared_head(found, at, nouns)
             if shared is not None:
                 found.insert(at + 1, Word(shared, shared, found[at].start, found[at].end, False))
-        elif second in ("and", "or") and joint in _CUTLERY and head in _CUTLERY and joint != head:
-            if nouns.knows(f"{first} {joint}") and nouns.knows(f"{first} {head}"):
-                found.insert(at + 3, Word(first, first, found[at + 3].start, found[at + 3].start, False))
+        elif second in ("and", "or") and _share_modifier(first, joint, head, nouns):
+            found.insert(at + 3, Word(first, first, found[at + 3].start, found[at + 3].start, False))
     return found
+
+
+def _share_modifier(modifier: str, one: str, other: str, nouns: KnownNouns) -> bool:
+    """Return True for two pieces of cutlery that are both known with the modifier: *dessert fork and spoon*."""
+    cutlery = one in _CUTLERY and other in _CUTLERY and one != other
+    return cutlery and nouns.knows(f"{modifier} {one}") and nouns.knows(f"{modifier} {other}")
 
 
 def _shared_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> str | None:

@@ -37,7 +37,16 @@ from deixis.grammar.english.tree import (
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.function_words import PERSONS
-from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, GAPS, HOLDERS, PARTS, SUBSTANCES, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    AIMED_PARTS,
+    GAPS,
+    HOLDERS,
+    PARTS,
+    SUBSTANCES,
+    SURFACES,
+    VESSELS,
+    last_word,
+)
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
@@ -389,6 +398,9 @@ class Builder(Transformer[Any, Built]):
         if noun.phrase.head.endswith(("degree angle", "degree")) and relation in ("at", "inside"):
             target = next((p for p in (*noun.phrase.predicates, *extra) if p.relation == "to"), None)
             return () if target is None else (replace(target, relation="diagonal", span=span),)
+        if relation == "opposite" and noun.phrase.head in _SIDES and noun.phrase.of is None:
+            misunderstood(span, "this does not say what is on the other side")
+            return (*noun.phrase.predicates, *extra)  # 'opposite left'
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
             return (*_places(relator, noun.phrase.members, span), *extra)
         side = PLACE_NOUNS.get(noun.phrase.head, "")

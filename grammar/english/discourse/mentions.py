@@ -26,7 +26,9 @@ SUPERLATIVES = {
     ("thickness", 1): "thickest", ("thickness", -1): "thinnest",
 }  # fmt: skip
 
-_COMPARISONS = frozenset({"bigger", "smaller", "taller", "shorter", "longer", "wider", "narrower", "thicker", "thinner"})
+_COMPARISONS = frozenset(
+    {"bigger", "smaller", "taller", "shorter", "longer", "wider", "narrower", "thicker", "thinner"}
+)
 """Relations to a thing that need not be there: *smaller than a dinner plate*."""
 
 
