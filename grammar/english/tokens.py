@@ -507,7 +507,7 @@ _FRONTED = word_set("on at in to above below beneath under behind beside between
 """Prepositions with which a place begins that stands before a command."""
 _POINTING = frozenset({"this", "that", "these", "those"})
 _SAYS_MORE = IS_FORMS | MODALS.keys() | word_set("if when while before after until you we they who which order")
-"""Words of clauses, and of what is no place."""
+"""Words of clauses, and of phrases that do not name a place."""
 
 
 DOUBT = re.compile(
@@ -516,7 +516,7 @@ DOUBT = re.compile(
     r"|you\s+(?:ever\s+)?(?:forget|(?:do\s+not|don['\u2019]t)\s+(?:know|remember)|mix\s+up)\s+(?:where|which|how)\b[^,.;]*,)",
     re.I,
 )
-"""Beginning of a sentence that is no condition of a place: *if in doubt, …*, *if you are not sure where it goes, …*."""
+"""Beginning of a sentence that does not limit what follows: *if in doubt, …*, *if you are not sure where it goes, …*."""
 
 
 def _without_doubts_of_the_reader(text: str, span: Span, words: list[Word]) -> None:

@@ -406,8 +406,8 @@ class Builder(Transformer[Any, Built]):
         side = PLACE_NOUNS.get(noun.phrase.head, "")
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
-            towards = (relator.preposition.phrase,) if relator.preposition.phrase in _TOWARDS else ()
-            return (Predicate(relation, (), span, value=aim, adverbs=towards, positive=relator.positive), *extra)
+            words = tuple(_TOWARDS & {relator.preposition.phrase})
+            return (Predicate(relation, (), span, value=aim, adverbs=words, positive=relator.positive), *extra)
         own = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("it", "he", "she", "they")
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
@@ -497,8 +497,7 @@ class Builder(Transformer[Any, Built]):
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
         moving = written == "over" or written in AWAY_FROM or written.startswith(("from ", "to the "))
-        towards = written in _TOWARDS and is_place(noun.phrase)
-        kept = shaped or moving or towards or "side of" in written
+        kept = shaped or moving or (written in _TOWARDS and is_place(noun.phrase)) or "side of" in written
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
