@@ -516,7 +516,7 @@ DOUBT = re.compile(
     r"|you\s+(?:ever\s+)?(?:forget|(?:do\s+not|don['\u2019]t)\s+(?:know|remember)|mix\s+up)\s+(?:where|which|how)\b[^,.;]*,)",
     re.I,
 )
-"""Beginning of a sentence that does not limit what follows: *if in doubt, …*, *if you are not sure where it goes, …*."""
+"""Beginning of a sentence that limits nothing: *if in doubt, …*, *if you are not sure where it goes, …*."""
 
 
 def _without_doubts_of_the_reader(text: str, span: Span, words: list[Word]) -> None:

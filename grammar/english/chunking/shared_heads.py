@@ -22,7 +22,9 @@ _BREAD_AND_BUTTER = {
 _USES = (
     EVENTS
     | SUBSTANCES
-    | word_set("bread dessert salad fruit fish meat cake luncheon brunch appetizer starter cocktail champagne picnic")
+    | word_set(
+        "bread dessert salad fruit melon oyster egg fish meat cake luncheon brunch appetizer starter cocktail champagne picnic"
+    )
     | word_set("patio dining serving")
 )
 """Nouns that say what the thing of the next noun is for, or where: *dessert spoon*, *picnic table*."""

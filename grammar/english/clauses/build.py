@@ -438,13 +438,13 @@ class Builder(Transformer[Any, Built]):
         last = noun.phrase.predicates[-1] if noun.phrase.predicates else None
         if (
             last is not None
-            and relation in _LEVEL_RELATIONS
+            and (relation in _LEVEL_RELATIONS or (relation == "next_to" and last.part == "side"))
             and last.relation in ("left", "right")
             and not last.arguments
-            and last.part is None
-        ):  # 'above X to the left'
+            and (last.part is None or (last.part == "side" and noun.phrase.determiner != "a"))
+        ):  # 'above X to the left', 'above the plate on the left side'
             bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
-            noun, extra = Noun(bare, extra), (replace(last, arguments=(bare,)), *extra)
+            noun, extra = Noun(bare, extra), (replace(last, arguments=(bare,), part=None), *extra)
         if last_word(noun.phrase.head) in GAPS and relation in ("inside", "on") and noun.phrase.predicates:
             between = tuple(p for p in noun.phrase.predicates if p.relation == "between")
             if between:  # 'in the space between the plate and the cup'

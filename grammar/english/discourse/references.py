@@ -201,7 +201,8 @@ class References:
         if last == VIEWER or (last in PEOPLE and noun == last):
             entity = self._earlier(phrase) or self._new(phrase, Role.VIEWER if last == VIEWER else Role.PERSON)
             return entity
-        if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another":
+        other = self.surface is not None and " " in noun and " " in self.surface.noun and noun != self.surface.noun
+        if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another" and not other:
             if self.surface is None:
                 self.surface = Entity(noun, Role.SURFACE, born=self.sentence)
             return self.surface
