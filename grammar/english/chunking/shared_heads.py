@@ -23,7 +23,8 @@ _USES = (
     EVENTS
     | SUBSTANCES
     | word_set(
-        "bread dessert salad fruit melon oyster egg fish meat cake luncheon brunch appetizer starter cocktail champagne picnic"
+        "bread dessert salad fruit melon oyster egg fish meat cake luncheon brunch appetizer starter cocktail"
+        " champagne picnic"
     )
     | word_set("patio dining serving")
 )
@@ -101,6 +102,8 @@ def _shared_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> str | Non
     head = next((norm for norm in following[:2] if norm not in _SIZES), "")
     if not head.isalpha() or (head != following[0] and following[0] not in _SIZES) or (first, second) in _ONE_THING:
         return None
+    if is_adjective(first) and len(following) > 1 and nouns.knows(f"{head} {following[1]}"):
+        return None  # 'a red or white wine glass'
     if nouns.knows(f"{first} {head}") and nouns.knows(f"{second} {head}"):
         return head
     several = joint == "or" or nouns.singular(head)[1]

@@ -214,7 +214,7 @@ class Builder(Transformer[Any, Built]):
                 shared = _shared([("", phrase.predicates[-1:]), (joint.value, tuple(mods))])
                 phrase = replace(phrase, predicates=(*phrase.predicates[:-1], *shared[0][1]))
                 mods = shared[1][1]
-                if joint.value == "or" and shared[0][1][0].relation != "like":
+                if joint.value == "or" and mods and shared[0][1][0].relation != "like":
                     either = [replace(p, adverbs=(*p.adverbs, "possibly")) for p in (shared[0][1][0], mods[0])]
                     phrase = replace(phrase, predicates=(*phrase.predicates[:-1], either[0]))
                     mods = (either[1], *mods[1:])  # 'a napkin in the middle or on the side plate'

@@ -371,12 +371,14 @@ def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
 def _apposition_of_object(chunks: list[Chunk], at: int) -> _Run | None:
     """Find a relative clause between the object of a command and its place: *lay the cloth, which is white, over it*.
 
-    Such a clause says what the thing is, or compares it with another one.
+    Such a clause says what the thing is, or compares it with another one; so does *filled with water and ice*.
     """
     types = [type_at(chunks, k) for k in range(at - 2, at + 3)]
-    if at < 2 or types[:4] != ["PUT", "NP", "COMMA", "REL"] or types[4] != "BE":
+    filled = types[3] == "WITH" and chunks[at + 1].value.preposition.phrase.endswith("filled with")
+    if at < 2 or types[:3] != ["PUT", "NP", "COMMA"] or not (filled or types[3:] == ["REL", "BE"]):
         return None
-    end = next((k for k in range(at + 1, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
+    joints = JOINT_TYPES - {"AND"} if filled else JOINT_TYPES
+    end = next((k for k in range(at + 1, len(chunks)) if chunks[k].type in joints), len(chunks))
     return (end + 1, None) if type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in ("PREP", "ADV") else None
 
 

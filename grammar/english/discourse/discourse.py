@@ -124,7 +124,7 @@ class Discourse(Statements):
         return self.drafts
 
     def _focus_on_label(self, number: int) -> None:
-        """Let *it* in the next sentence mean the label of this one: *soup spoon: a large one. It is here.*"""
+        """Let *it* in the next sentence mean the label of this one, as in *Spoon: a large one*."""
         sentence, following = self.sentences[number], self.sentences[number + 1 : number + 2]
         label = ITEM_LABEL.match(sentence.text)
         if label is None or not following or ABOUT_IT.match(following[0].text) is None:

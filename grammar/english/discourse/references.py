@@ -20,6 +20,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PLACES_OF,
     REMOVABLE,
     SINGLE_PLURALS,
+    SUBSTANCES,
     SURROUNDINGS,
     VESSELS,
     VIEWER,
@@ -783,6 +784,9 @@ class References:
                 entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
                 if entity.itself.members or entity is besides:
                     continue
+                poured = entity is focus.subject and focus.relation == "inside" and last_word(entity.noun) in SUBSTANCES
+                if poured and any(last_word(e.noun) in VESSELS for e in focus.others if e is not besides):
+                    continue  # 'fill the jug with milk and put it on the mat'
                 if entity.itself.plural and not entity.itself.single:
                     several = several or entity
                     continue

@@ -474,6 +474,8 @@ def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[s
         ("Three guests can stand directly in front of the box. The salt is behind the jug.", ["behind(salt, jug)"]),
         ("The placement of jugs on a box takes time. The salt is behind the jug.", ["behind(salt, jug)"]),
         ("Opposite top left, we place the salt. The bowl is behind the jug.", ["behind(bowl, jug)"]),
+        ("Pour milk into the jug, or with a lid. Put it on the box.", ["on(jug, box)"]),
+        ("Fill the milk jug with milk. Put it behind the box.", ["behind(milk_jug, box)"]),
         ("A lid in the jug or behind the box. The salt is behind the jug.", ["behind(salt, jug)"]),
     ],
 )  # fmt: skip
