@@ -32,6 +32,7 @@ class Guess(StrEnum):
     CONTESTED = "the commas or conjunctions can be read otherwise"
     ELLIPSIS = "a phrase without a noun goes back to things that were named long before"
     THEY = "it is not clear which things 'they' stands for"
+    STRANGE = "these words may be several things, or have a verb among them, and not be one name"
     BARE = "a word without an article can be another word than the name of a thing"
 
 
@@ -48,6 +49,7 @@ SHARE_RIGHT = {
     Guess.CONTESTED: 0.6,
     Guess.ELLIPSIS: 0.6,
     Guess.THEY: 0.3,
+    Guess.STRANGE: 0.33,
 }
 """Share of right facts among those with one guess.
 

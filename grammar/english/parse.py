@@ -125,7 +125,8 @@ def _place_of_list(
     ends = words[-1].norm == ":" or sentence.heading
     if sentence.heading and words[-1].norm == ":":
         sentence = _sentence(text, replace(raw, heading=False), words, nouns, ())
-    if sentence.fragment is None and len(sentence.clauses) == 1 and sentence.clauses[0].subject is None:
+    whole = sentence.fragment is None and len(sentence.clauses) == 1 and sentence.clauses[0].subject is None
+    if whole and sentence.clauses[0].span[0] == sentence.span[0]:
         return sentence.clauses[0].predicates
     phrase = sentence.fragment
     if not ends or phrase is None or sentence.clauses or phrase.predicates or phrase.members:

@@ -14,6 +14,7 @@ from deixis.grammar.english.discourse.entities import Entity, Role, names_of
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.telling.paraphrase import paraphrase
 from deixis.grammar.english.tree import Misunderstood, Mood, Sentence
+from deixis.grammar.english.vocabulary.known_nouns import known_nouns
 from deixis.grammar.errors import Diagnostic, ScriptError
 from deixis.grammar.reading import DoubtfulPronoun, Reading, ReadSentence, StatedFact, joined_choices
 from deixis.grammar.script import (
@@ -68,7 +69,7 @@ def read_english(
     """
     ontology = ontology or default_ontology()
     sentences = parse_english(text, ontology, deadline)
-    discourse = Discourse(text, sentences, dict(ontology.hedges))
+    discourse = Discourse(text, sentences, dict(ontology.hedges), known_nouns(ontology.kinds))
     drafts = discourse.read()
     writer = _Writer(text, file, ontology, discourse)
     stated = tuple(fact for draft in drafts for fact in writer.facts(draft))

@@ -10,15 +10,18 @@ from dataclasses import dataclass
 from deixis.grammar.english.tree import Degree, Span
 from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
 from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
     DETERMINERS,
+    HEDGES,
     IS_FORMS,
+    MODALS,
     ORDINALS,
     PAST_FORMS,
     POSSESSIVES,
     PRONOUNS,
     TYPOS,
 )
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, prepositions
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
 from deixis.grammar.english.vocabulary.verbs import PUT_VERBS, verb_forms
 
@@ -85,12 +88,13 @@ _DENIALS = {
     ("no", "longer"): "never", ("with", "no"): "without", ("far", "from", "being"): "not", ("not", "a", "single"): "no",
     ("not", "anywhere", "near"): "not near", ("not", "anywhere", "close", "to"): "not near",
     ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
+    ("has", "become"): "became", ("have", "become"): "became",
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("'d", "better"): "should", ("had", "better"): "should",
 }  # fmt: skip
-"""Phrases that deny what follows them, or advise it, with the words that say the same."""
+"""Phrases that deny what follows them, advise it or say how it became, with the words that say the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _FORMS_OF_ADDRESS = word_set("mr mrs ms dr st prof capt rev sgt lt col gen")
@@ -114,6 +118,9 @@ _STEP = re.compile(
     r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
     re.I,
 )
+_BARE_STEP = re.compile(r"[ \t]*(\d{1,2})[ \t]+(?=([A-Za-z]+))")
+MAX_ITEM = 500
+"""Number of characters in which the next item of a numbered list begins."""
 
 
 @dataclass(slots=True)
@@ -161,7 +168,7 @@ def sentences(text: str) -> Iterator[RawSentence]:
         if start >= length:
             return
         if start == 0 or text[start - 1] == "\n" or not text[:start].rsplit("\n", 1)[-1].strip():
-            mark = _STEP.match(text, start)
+            mark = _step(text, start)
             if mark is not None and mark.end() < length and text[mark.end() : mark.end() + 1] != "\n":
                 step = mark[0].strip()
                 start = mark.end()
@@ -175,6 +182,30 @@ def sentences(text: str) -> Iterator[RawSentence]:
         start = max(end, start + 1)
 
 
+def _step(text: str, start: int) -> re.Match[str] | None:
+    """Return the mark of a list item that begins here; a number without a full stop counts as its neighbours do."""
+    mark = _STEP.match(text, start)
+    if mark is not None:
+        return mark
+    mark = _BARE_STEP.match(text, start)
+    if mark is None or not _commands(mark):
+        return None
+    following = text[start : start + MAX_ITEM].split("\n")[1:]
+    earlier = text[max(0, start - MAX_ITEM) : start].split("\n")[::-1]
+    for lines, number in ((following, int(mark[1]) + 1), (earlier, int(mark[1]) - 1)):
+        other = _BARE_STEP.match(next((line for line in lines if line.strip()), ""))
+        if other is not None and int(other[1]) == number and _commands(other):
+            return mark
+    return None
+
+
+def _commands(mark: re.Match[str]) -> bool:
+    """Return True if the word after the number of a list item is a verb in its base form."""
+    verb = mark[2].casefold()
+    form = verb_forms().get(verb)
+    return verb in PUT_VERBS or (form is not None and form.form == "base")
+
+
 def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
     for match in _ENDS.finditer(text, start):
         mark = match[0]
@@ -185,7 +216,7 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
                 return match.end(), _is_heading(line) or (more and _is_title(line))
             line = text[start : match.start()]
             following = text[match.end() : match.end() + 80]
-            if _STEP.match(following) or line.rstrip().endswith((":", ";")) or _is_heading(line.rsplit("\n", 1)[-1]):
+            if _step(text, match.end()) or line.rstrip().endswith((":", ";")) or _is_heading(line.rsplit("\n", 1)[-1]):
                 return match.end(), _is_heading(line)
             if "\n" not in line and following[:1].isupper() and len(line) < 60 and not line.rstrip().endswith(","):
                 return match.end(), False
@@ -259,6 +290,26 @@ def _read_hours(words: list[Word]) -> None:
 
 _HOUR = re.compile(r"(1[0-2]|[1-9])(?::[0-5]\d)?")
 """An hour of a clock face as a direction; minutes make no difference."""
+
+
+def _read_fractions(words: list[Word]) -> None:
+    """Read *1/2* and *1 1/2* before a word, which are three and four marks, as one number."""
+    for i in range(len(words) - 3, -1, -1):
+        one, slash, other = words[i : i + 3]
+        part = _DENOMINATOR.match(other.norm)
+        adjacent = one.end == slash.start and slash.end == other.start
+        if slash.norm != "/" or not adjacent or part is None or not one.norm.isdigit():
+            continue
+        if int(one.norm) >= int(part[1]) or not (part[2] or any(word.is_word for word in words[i + 3 : i + 4])):
+            continue
+        value, first = int(one.norm) / int(part[1]), i
+        if i and words[i - 1].norm.isdigit() and words[i - 1].end + 1 == one.start:
+            value, first = value + int(words[i - 1].norm), i - 1
+        number = Word(one.text, f"{value:.4g}{part[2]}", words[first].start, other.end, True)
+        words[first : i + 3] = [number]
+
+
+_DENOMINATOR = re.compile(r"(2|3|4|8|16)((?:-[a-z]+)?)$")
 
 
 def _without_cleft(words: list[Word]) -> None:
@@ -414,6 +465,67 @@ def _without_corrected(words: list[Word]) -> None:
             return
 
 
+def _with_commands_after_places(words: list[Word]) -> None:
+    """Read *to the right we place the cup* and *on those place the cup* as *to the right, place the cup*."""
+    if all(word.norm != "than" for word in words):
+        for i in range(len(words) - 3, -1, -1):
+            after = [word.norm for word in words[i + 1 : i + 4]]
+            if words[i].norm in ("further", "farther") and after in (["to", "the", "left"], ["to", "the", "right"]):
+                del words[i]
+    for verb in range(len(words) - 2, 1, -1):
+        following = words[verb + 1].norm
+        commands = words[verb].norm in PUT_VERBS and (following in DETERMINERS or following in POSSESSIVES)
+        if not commands:
+            continue
+        end = verb
+        while end > 1 and words[end - 1].norm in ("now", "should", "then"):
+            end -= 1
+        if words[end - 1].norm in ("you", "we"):
+            end -= 1
+        elif end < verb:
+            continue
+        told = end < verb
+        first = end - 1
+        while first > 0 and words[first - 1].norm not in (";", ":", ".", "and", "then", "("):
+            first -= 1
+        opening = [word.norm for word in words[first:end] if word.norm not in ADVERBS]
+        while opening and (opening[0] in HEDGES or degree_of(opening[0])[1] is not Degree.PLAIN):
+            del opening[0]
+        rest = [word.norm for word in words[verb + 1 :]]
+        rest = rest[: next((i for i, norm in enumerate(rest) if norm in (",", ";", ":", ".")), len(rest))]
+        place = opening[:1] != [] and (opening[0] in _FRONTED or opening[0] in DIRECTION_WORDS) and len(opening) > 1
+        if not place or not _SAYS_MORE.isdisjoint(opening) or not IS_FORMS.isdisjoint(rest):
+            continue
+        marked = words[end - 1].norm == ","
+        if not told and (marked or words[end - 1].norm not in _POINTING | PLACE_NOUNS.keys()):
+            continue
+        comma = [] if marked else [Word(",", ",", words[end - 1].end, words[end - 1].end, False)]
+        words[end:verb] = comma
+
+
+_FRONTED = word_set("on at in to above below beneath under behind beside between next near over across opposite inside")
+"""Prepositions with which a place begins that stands before a command."""
+_POINTING = frozenset({"this", "that", "these", "those"})
+_SAYS_MORE = IS_FORMS | MODALS.keys() | word_set("if when while before after until you we they who which order")
+"""Words of clauses, and of phrases that do not name a place."""
+
+
+DOUBT = re.compile(
+    r"\s*if\s+(?:in\s+doubt\s*,"
+    r"|you(?:\s+are|['\u2019]re|\s+were)?\s*(?:not|\s(?:are|were)n['\u2019]t|ever\s+un|un)\s*(?:sure|certain)\b[^,.;]*,"
+    r"|you\s+(?:ever\s+)?(?:forget|(?:do\s+not|don['\u2019]t)\s+(?:know|remember)|mix\s+up)\s+(?:where|which|how)\b[^,.;]*,)",
+    re.I,
+)
+"""Beginning of a sentence that limits nothing: *if in doubt, …*, *if you are not sure where it goes, …*."""
+
+
+def _without_doubts_of_the_reader(text: str, span: Span, words: list[Word]) -> None:
+    """Leave out *if in doubt* and its like at the beginning of a sentence."""
+    doubt = DOUBT.match(text, *span)
+    if doubt is not None:
+        words[:] = [word for word in words if word.start >= doubt.end()]
+
+
 def _says_no_place(words: str) -> bool:
     """Return True for a list of properties in brackets: *(chrome, lead frayed)*."""
     said = words.casefold().replace(",", " ").split()
@@ -477,9 +589,12 @@ def words_of(text: str, span: Span) -> list[Word]:
         del found[ends - 1], found[0]  # the whole sentence is in parentheses
     _join_asides(text, found)
     _read_hours(found)
+    _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)
     _without_corrected(found)
+    _without_doubts_of_the_reader(text, span, found)
+    _with_commands_after_places(found)
     for i in range(len(found) - 2, -1, -1):
         if found[i].norm in ("'ve", "have", "has", "'s", "'d") and found[i + 1].norm == "got":
             found[i].norm = "has" if found[i].norm in ("has", "'s") else "have"

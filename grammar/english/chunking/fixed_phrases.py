@@ -313,7 +313,8 @@ class FixedPhraseChunker(JointChunker):
             if (norm in CIRCUMSTANCES or general) and not self.nouns.is_noun(i + 1):
                 if self.norms[i + 1 : i + 3] == ["of", "thumb"]:
                     return i + 3
-                return None if self.norms[i + 1] in ("of", "'s", "to") else i + 1
+                placed = norm == "setting" and ("of" in self.norms[at:i] or self.norms[i - 1] == "place")
+                return None if placed or self.norms[i + 1] in ("of", "'s", "to") else i + 1
             several = norm == "of" and self.norms[i - 1] in COLLECTIVES | {"variety"}
             if not norm[:1].isalnum() or (norm in prepositions() and not several) or norm in IS_FORMS:
                 return None

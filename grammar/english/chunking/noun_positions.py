@@ -383,6 +383,10 @@ class NounFinder:
             if norm.endswith("ed") and len(norm) > 4 and not is_adjective(norm) and norm not in ED_NOUNS:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
+        named = norm in NAMED_LIKE_THINGS and form.form == "base"
+        named = named or (form.lemma in NAMED_LIKE_THINGS and form.form == "s" and after in ("or", "and", ","))
+        if named and before.isalpha() and before not in PUT_VERBS and self._nouns.knows(f"{before} {norm}"):
+            return True  # 'a fork and a dessert spoon above the plate'
         if form.form == "ing":
             if norm == "setting" and before in ("place", "table") and not self.is_determiner(at + 1):
                 return True

@@ -630,7 +630,7 @@ class VerbChunker(RelatorChunker):
 
     def _is_can(self, at: int) -> bool:
         """Return True for a word after *can* that may be a noun: *the can rest*; False for *can stand on it*."""
-        return self.norms[at] in NOUNS_TOO and not self._predicate_after(at)
+        return self.norms[at] in NOUNS_TOO and not self._predicate_after(at + (self.norms[at + 1] in ADVERBS))
 
     def _perfect(self, at: int) -> bool:
         i = at + 1

@@ -37,7 +37,16 @@ from deixis.grammar.english.tree import (
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.function_words import PERSONS
-from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SUBSTANCES, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    AIMED_PARTS,
+    GAPS,
+    HOLDERS,
+    PARTS,
+    SUBSTANCES,
+    SURFACES,
+    VESSELS,
+    last_word,
+)
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
@@ -205,6 +214,10 @@ class Builder(Transformer[Any, Built]):
                 shared = _shared([("", phrase.predicates[-1:]), (joint.value, tuple(mods))])
                 phrase = replace(phrase, predicates=(*phrase.predicates[:-1], *shared[0][1]))
                 mods = shared[1][1]
+                if joint.value == "or" and mods and shared[0][1][0].relation != "like":
+                    either = [replace(p, adverbs=(*p.adverbs, "possibly")) for p in (shared[0][1][0], mods[0])]
+                    phrase = replace(phrase, predicates=(*phrase.predicates[:-1], either[0]))
+                    mods = (either[1], *mods[1:])  # 'a napkin in the middle or on the side plate'
             if phrase.members and all(member.predicates for member in phrase.members):
                 *rest, last = phrase.members  # 'A on the left and B on the right, next to C'
                 last = _restricted(last, mods)
@@ -385,12 +398,16 @@ class Builder(Transformer[Any, Built]):
         if noun.phrase.head.endswith(("degree angle", "degree")) and relation in ("at", "inside"):
             target = next((p for p in (*noun.phrase.predicates, *extra) if p.relation == "to"), None)
             return () if target is None else (replace(target, relation="diagonal", span=span),)
+        if relation == "opposite" and noun.phrase.head in _SIDES and noun.phrase.of is None:
+            misunderstood(span, "this does not say what is on the other side")
+            return (*noun.phrase.predicates, *extra)  # 'opposite left'
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
             return (*_places(relator, noun.phrase.members, span), *extra)
         side = PLACE_NOUNS.get(noun.phrase.head, "")
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
-            return (Predicate(relation, (), span, value=aim, positive=relator.positive), *extra)
+            words = tuple(_TOWARDS & {relator.preposition.phrase})
+            return (Predicate(relation, (), span, value=aim, adverbs=words, positive=relator.positive), *extra)
         own = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("it", "he", "she", "they")
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
@@ -421,13 +438,13 @@ class Builder(Transformer[Any, Built]):
         last = noun.phrase.predicates[-1] if noun.phrase.predicates else None
         if (
             last is not None
-            and relation in _LEVEL_RELATIONS
+            and (relation in _LEVEL_RELATIONS or (relation == "next_to" and last.part == "side"))
             and last.relation in ("left", "right")
             and not last.arguments
-            and last.part is None
-        ):  # 'above X to the left'
+            and (last.part is None or (last.part == "side" and noun.phrase.determiner != "a"))
+        ):  # 'above X to the left', 'above the plate on the left side'
             bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
-            noun, extra = Noun(bare, extra), (replace(last, arguments=(bare,)), *extra)
+            noun, extra = Noun(bare, extra), (replace(last, arguments=(bare,), part=None), *extra)
         if last_word(noun.phrase.head) in GAPS and relation in ("inside", "on") and noun.phrase.predicates:
             between = tuple(p for p in noun.phrase.predicates if p.relation == "between")
             if between:  # 'in the space between the plate and the cup'
@@ -453,6 +470,9 @@ class Builder(Transformer[Any, Built]):
         if relation == "by" and noun.phrase.owner is None and last_word(noun.phrase.head) in DEGREES:
             misunderstood(span, f"'{noun.phrase.head}' says how much, not where")
             return (*noun.phrase.predicates, *extra)  # 'turned by ninety degrees'
+        if relation in ("inside", "at") and last_word(noun.phrase.head) in _OCCASIONS:
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")
+            return (*noun.phrase.predicates, *extra)  # 'in a festive meal', 'at one time'
         manner = relation == "by" and noun.phrase.head in _MANNERS
         unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
         if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:
@@ -477,7 +497,7 @@ class Builder(Transformer[Any, Built]):
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
         moving = written == "over" or written in AWAY_FROM or written.startswith(("from ", "to the "))
-        kept = shaped or moving or "side of" in written
+        kept = shaped or moving or (written in _TOWARDS and is_place(noun.phrase)) or "side of" in written
         adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
@@ -741,7 +761,9 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     if last is None or part is None:
         return noun, ()
     own = part.owner is not None and part.owner.pronoun in ("it", "they")
-    if not own and not (part.owner is None and part.determiner == "the" and last.relation in ("facing", "pointing")):
+    bare = part.determiner is None and part.plural and last_word(part.head) in AIMED_PARTS
+    aimed = part.owner is None and (part.determiner == "the" or bare) and last.relation in ("facing", "pointing")
+    if not own and not aimed:
         return noun, ()
     kept = phrase.predicates[:-1]
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
@@ -832,6 +854,7 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
 _SHARING_PLACES = frozenset({"along with", "together with"})
 """Prepositions of a thing that is where the subject is: *the gloves are on the shelf, along with the goggles*."""
 
+_TOWARDS = frozenset({"toward", "towards"})
 _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
 
 
@@ -852,6 +875,10 @@ _AMOUNTS = word_set(
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 
 
+_OCCASIONS = word_set(
+    "meal dinner lunch breakfast supper luncheon brunch concert performance ceremony wedding rehearsal time interval"
+)
+"""Nouns of what lasts or comes again, which nothing is in: *in a formal dinner*, *at equal intervals*."""
 _MANNERS = word_set(
     "value price brand theme subject author mistake default law tradition custom rule accident chance colour color size"
     " hand name age height type kind length weight shape date number order"
@@ -866,6 +893,8 @@ _HEIGHTS = {
 
 
 _SHARING = DIRECTION_RELATIONS | {"opposite", "next_to", "far", "along", "against"}
+_ALIGNING = frozenset({"parallel", "perpendicular", "aligned", "level_with"})
+"""Relations after a direction that has their object: *above and parallel to the plate*."""
 
 
 def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tuple[Predicate, ...]]]:
@@ -886,7 +915,7 @@ def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tu
             continue
         after = made[i + 1][1][0] if i + 1 < len(made) and made[i + 1][1] and made[i + 1][0] in ("and", "or") else None
         before = made[i - 1][1][0] if i and made[i - 1][1] and link in ("and", ",", "or") else None
-        if after is not None and after.arguments and after.relation in _SHARING and len(after.arguments) == 1:
+        if after is not None and after.arguments and after.relation in _SHARING | _ALIGNING:
             made[i] = (link, (replace(this, arguments=after.arguments),))
         elif before is not None and before.arguments and before.relation in _SHARING and len(before.arguments) == 1:
             made[i] = (link, (replace(this, arguments=before.arguments),))

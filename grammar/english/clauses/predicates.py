@@ -13,7 +13,7 @@ from deixis.grammar.english.tree import (
     Predicate,
     Span,
 )
-from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
@@ -82,6 +82,8 @@ _EXTENDING = frozenset({"reach", "extend", "stretch"})
 """Verbs after which a direction without an object is where a thing points: *its branches reach to the left*."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
+_CUTTING = frozenset({"fold", "cut", "slice", "shape", "form"})
+"""Verbs after which *in* and a bare noun name a shape too: *folded in squares*, but *rolled in napkins*."""
 _STATES = frozenset({"burn", "fold", "roll", "turn", "open", "hide", "bury", "tip"})
 _STAYING = word_set(
     "stand sit lie lay hang put place position locate situate set keep leave rest stay remain park stow store mount"
@@ -146,10 +148,15 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 continue
             if following is not None and lemma in _RANGING and following.relation not in ("row", "with", "inside"):
                 found.append(Predicate("row", (), predicate.span, positive=predicate.positive))
-            if following is not None and lemma in _SHAPING and "into" in following.adverbs:
+            if following is not None and lemma in _SHAPING and _is_shape(lemma, following):
                 misunderstood(following.span, "this says what shape something gets, not where it is")
+                found += [p for argument in following.arguments for p in argument.predicates]
                 i += 2
                 continue  # 'folded into a fan'
+            if following is not None and lemma == "base" and following.relation == "on":
+                misunderstood(following.span, "this says what something follows, not where it is")
+                i += 2
+                continue  # 'based on the old layout'
             if following is not None and lemma in _LEAVING and any(a.startswith("from ") for a in following.adverbs):
                 misunderstood(following.span, "this says where something was")
                 i += 2
@@ -215,6 +222,16 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
         i += 1
     found = [replace(p, relation="near") if p.relation == "by" else p for p in found]
     return tuple(checked(found)) if check else tuple(found)
+
+
+def _is_shape(lemma: str, predicate: Predicate) -> bool:
+    """Return True for what something is folded into: *into a fan*, *in squares*, *into thirds*."""
+    if "into" in predicate.adverbs or (predicate.relation == "part" and not predicate.arguments):
+        return True
+    shapes = predicate.arguments if predicate.relation == "inside" and lemma in _CUTTING else ()
+    return bool(shapes) and all(
+        a.determiner is None and a.owner is None and last_word(a.head) not in VESSELS | HOLDERS for a in shapes
+    )
 
 
 def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, ...]:
@@ -415,7 +432,10 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
     if member.head in GAPS:
         return []
     for predicate in member.predicates:
-        if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
+        aimed = predicate.relation in ("facing", "pointing") and last_word(member.head) in AIMED_PARTS
+        if aimed and any(argument.pronoun == "it" for argument in predicate.arguments):
+            found.append((predicate, False))  # 'right of the plate with the blade facing it'
+        elif any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
             one = any(argument.pronoun == "it" and not argument.head for argument in predicate.arguments)
             predicate = replace(predicate, of_one=one)
             found.append((predicate, True))

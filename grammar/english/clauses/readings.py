@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from deixis.grammar.english.chunking.chunk import Chunk
+from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence, Span
 
 MAX_OTHER_JOINTS = 6
@@ -32,7 +33,10 @@ def other_joints(chunks: list[Chunk]) -> Iterator[tuple[list[Chunk], bool]]:
     tuple of (list of Chunk, bool)
         Copy of the chunks in which one joint ends a clause; True if the joint is a conjunction.
     """
-    joints = [i for i, chunk in enumerate(chunks) if chunk.type in ("COMMA", "AND") and not _in_list(chunks, i)]
+    joints = [
+        i for i, chunk in enumerate(chunks)
+        if chunk.type in ("COMMA", "AND") and not _in_list(chunks, i) and not _joins_directions(chunks, i)
+    ]  # fmt: skip
     for i in joints[:MAX_OTHER_JOINTS]:
         copies = [replace(chunk) for chunk in chunks]
         copies[i].type = "CUT"
@@ -51,6 +55,16 @@ def _in_list(chunks: list[Chunk], at: int) -> bool:
         last += 2
     last += types[last + 2 : last + 4] == ["COMMA", "AND"]
     return last > first or types[last + 2 : last + 4] == ["AND", "NP"]
+
+
+def _joins_directions(chunks: list[Chunk], at: int) -> bool:
+    """Return True for *and* between two relations of one thing: *to the left of and above the napkin and fork*."""
+    if at == 0 or chunks[at].type != "AND" or [chunk.type for chunk in chunks[at + 1 : at + 3]] != ["PREP", "NP"]:
+        return False
+    if not chunks[at + 2].value.head:
+        return False  # 'in the centre, and around it lay almonds'
+    before = chunks[at - 1]
+    return before.type in ("OF", "ADV") or (before.type == "NP" and is_place(before.value))
 
 
 def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentence:

@@ -86,6 +86,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
         _without(_depicted), _without(_place_taken), _without(_count_apart),
         _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
+        _without(_apposition_of_object),
         _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
         _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
@@ -365,6 +366,20 @@ def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
     denied = chunks[at + 1].value.determiner == "no"  # 'phones have no place on the stand'
     group = replace(chunk.value, lemma="be", kind="be", positive=chunk.value.positive is not denied)
     return end, Chunk("BE", chunk.start, chunk.end, group, chunk.span)
+
+
+def _apposition_of_object(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find a relative clause between the object of a command and its place: *lay the cloth, which is white, over it*.
+
+    Such a clause says what the thing is, or compares it with another one; so does *filled with water and ice*.
+    """
+    types = [type_at(chunks, k) for k in range(at - 2, at + 3)]
+    filled = types[3] == "WITH" and chunks[at + 1].value.preposition.phrase.endswith("filled with")
+    if at < 2 or types[:3] != ["PUT", "NP", "COMMA"] or not (filled or types[3:] == ["REL", "BE"]):
+        return None
+    joints = JOINT_TYPES - {"AND"} if filled else JOINT_TYPES
+    end = next((k for k in range(at + 1, len(chunks)) if chunks[k].type in joints), len(chunks))
+    return (end + 1, None) if type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in ("PREP", "ADV") else None
 
 
 def _turn(chunks: list[Chunk], at: int) -> _Run | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from deixis.grammar.english.tokens import DOUBT
 from deixis.grammar.english.tree import Sentence
 from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.verbs import SAYING
@@ -212,7 +213,7 @@ def condition_of(sentence: Sentence) -> str | None:
     str or None
         Text of the condition with single spaces, or None for a sentence that does not begin with one.
     """
-    if not WHILE_DOING.match(sentence.text) and not CONDITION.match(sentence.text):
+    if DOUBT.match(sentence.text) or not (WHILE_DOING.match(sentence.text) or CONDITION.match(sentence.text)):
         return None
     return " ".join(sentence.text.split(",", 1)[0].split())
 

@@ -36,8 +36,21 @@ from deixis.grammar.english.discourse.mentions import SUPERLATIVES, _with_restri
 from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.tokens import DOUBT
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
-from deixis.grammar.english.vocabulary.nouns import FRONTS, GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.adjectives import is_adjective
+from deixis.grammar.english.vocabulary.nouns import (
+    ABSTRACT,
+    FRONTS,
+    GENERAL,
+    HOLDERS,
+    PARTS,
+    REMOVABLE,
+    SURFACES,
+    VIEWER_WORDS,
+    last_word,
+)
+from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
@@ -53,6 +66,9 @@ LABEL = re.compile(
     re.IGNORECASE,
 )
 """Words after a label of what follows: *towel first: fold it*."""
+ITEM_LABEL = re.compile(r"([A-Z][\w'\u2019-]*(?:\s+[\w'\u2019-]+){0,2})\s*:\s+\w")
+"""Label of an item and what is said of it: *Soup spoon: a large and round spoon.*"""
+ABOUT_IT = re.compile(r"\s*(?:it|they)\s", re.IGNORECASE)
 MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
 """Properties that a part and its whole need not share."""
 BARE_AFTER_BE = re.compile(
@@ -104,7 +120,26 @@ class Discourse(Statements):
                     self._fragment(part, number)
                 else:
                     self._clause(part, number)
+            self._focus_on_label(number)
         return self.drafts
+
+    def _focus_on_label(self, number: int) -> None:
+        """Let *it* in the next sentence mean the label of this one, as in *Spoon: a large one*."""
+        sentence, following = self.sentences[number], self.sentences[number + 1 : number + 2]
+        label = ITEM_LABEL.match(sentence.text)
+        if label is None or not following or ABOUT_IT.match(following[0].text) is None:
+            return
+        words = label[1].casefold().split()
+        while len(words) > 1 and is_adjective(words[0]):
+            del words[0]
+        noun, plural = self.nouns.singular(words[-1])
+        if not self.nouns.knows(noun) or noun in SURFACES | HOLDERS | PLACE_NOUNS.keys() | ABSTRACT:
+            return
+        span = (sentence.span[0], sentence.span[0] + label.end(1))
+        head = " ".join([*words[:-1], noun])
+        labelled = self._introduce(NounPhrase(span, head=head, determiner="the", plural=plural))
+        if labelled is not None:
+            self.references.recent.insert(0, Focus(labelled, [], None, number))
 
     def _fragment(self, phrase: NounPhrase, sentence: int) -> None:
         """Read a sentence without a verb: *rucksack at the back*, or a heading that tells the order of a list."""
@@ -290,7 +325,8 @@ class Discourse(Statements):
         if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
             subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
             clause = replace(clause, predicates=(*clause.predicates, *order))
-        whole = self.text[self.references.start : self.end]
+        doubt = DOUBT.match(self.text, self.references.start, self.end)
+        whole = self.text[self.references.start if doubt is None else doubt.end() : self.end]
         unreal = REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)
         unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1]) or SAID_AFTER.search(whole)
         unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
@@ -513,7 +549,8 @@ class Discourse(Statements):
             ):
                 self._add("parallel_each_other", (last,), ())
             else:
-                self._predicate(last, predicate, [])
+                kept = tuple(adverb for adverb in predicate.adverbs if adverb not in ("toward", "towards"))
+                self._predicate(last, replace(predicate, adverbs=kept), [])
         return True
 
     def _is_thing(self, subject: NounPhrase, predicates: tuple[Predicate, ...], clause: Clause) -> bool:

@@ -10,6 +10,7 @@ from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.references import References
 from deixis.grammar.english.discourse.surfaces import surface_noun
 from deixis.grammar.english.tree import Mood, NounPhrase, Predicate, Sentence, Span
+from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
 from deixis.grammar.english.vocabulary.nouns import HEADED, PEOPLE, last_word
 from deixis.ontology.graph.claims import COLLECTIVE
 
@@ -72,11 +73,16 @@ TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct|open)\w*\s+(?:\w+
 """Directions that are denied: *pointing away from the plate*."""
 
 
+MIN_WORDS_OF_LISTS = 3
+"""Number of words from which a name with a plural inside may be a list without commas."""
+
+
 class Drafting:
     """State of a text while its clauses are read in order, with the drafts of facts so far."""
 
-    def __init__(self, text: str, sentences: tuple[Sentence, ...], hedges: dict[str, float]) -> None:
+    def __init__(self, text: str, sentences: tuple[Sentence, ...], hedges: dict[str, float], nouns: KnownNouns) -> None:
         self.text = text
+        self.nouns = nouns
         self.sentences = sentences
         self.hedges = SUPPOSED | hedges
         self.drafts: list[Draft] = []
@@ -131,12 +137,21 @@ class Drafting:
         close = {guess for span, guess in self.references.guesses[-3:] if start <= span[0] and span[1] <= end}
         if close:
             how = replace(how, guesses=how.guesses | close)
+        if any(self._may_be_a_list(entity) for entity in (*subjects, *arguments)):
+            how = replace(how, guesses=how.guesses | {Guess.STRANGE})
         if is_doubtful(how.guesses):
             how = replace(how, uncertain=True, optional=True, weight=min(how.weight, 0.5))
         draft = Draft(relation, subjects, arguments, how, value, metres)
         if draft not in self.drafted:
             self.drafted.add(draft)
             self.drafts.append(draft)
+
+    def _may_be_a_list(self, entity: Entity) -> bool:
+        """Return True for a name of three words or more with a plural before the last: *forks plate butter knife*."""
+        words = entity.noun.split()
+        if entity.role is not Role.THING or len(words) < MIN_WORDS_OF_LISTS or self.nouns.knows(entity.noun):
+            return False
+        return any(self.nouns.singular(word)[1] for word in words[:-1])
 
     def _compare(self, relation: str, subject: Entity, other: Entity, phrase: NounPhrase) -> None:
         how = Qualification(phrase.span, self.references.sentence)

@@ -44,6 +44,7 @@ class Entity:
     absent: bool = False
     born: int = 0  # sentence that introduced it
     indefinite: bool = False
+    compared: bool = False  # only named as a measure: 'smaller than a dinner plate'
     aliases: set[str] = field(default_factory=set)  # other nouns for it: 'clock' for 'item 15, a clock'
     written: str = ""  # the noun as first written: 'glasses'
 

@@ -26,6 +26,11 @@ SUPERLATIVES = {
     ("thickness", 1): "thickest", ("thickness", -1): "thinnest",
 }  # fmt: skip
 
+_COMPARISONS = frozenset(
+    {"bigger", "smaller", "taller", "shorter", "longer", "wider", "narrower", "thicker", "thinner"}
+)
+"""Relations to a thing that need not be there: *smaller than a dinner plate*."""
+
 
 def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
     """Attach to the vessel what follows its contents: *a box of screws on the left*."""
@@ -288,6 +293,8 @@ class Mentions(Drafting, ABC):
         if phrase.determiner in ("each", "every"):
             self.how = replace(self.how, quantifier="each")
         found = self._introduce(phrase, relation, subject)
+        if found is not None and relation in _COMPARISONS and phrase.determiner in ("a", "an"):
+            found.itself.compared = True
         if (
             found is not None and subject is not None and phrase.count is not None and phrase.count > 1
             and found.size == subject.size and phrase.determiner is None

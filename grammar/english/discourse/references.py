@@ -20,6 +20,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PLACES_OF,
     REMOVABLE,
     SINGLE_PLURALS,
+    SUBSTANCES,
     SURROUNDINGS,
     VESSELS,
     VIEWER,
@@ -65,6 +66,10 @@ OPPOSITES = {
     "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
     "on": "under", "under": "on", "top": "bottom", "bottom": "top",
 }  # fmt: skip
+_ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
+"""Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
+_CARRYING = frozenset({"on", "across", "inside"})
+"""Relations to a thing that the subject of the clause before carries or holds."""
 CORNERS = frozenset({"top_left", "top_right", "bottom_left", "bottom_right"})
 """Relations that name a corner of a thing or of the surface, where no other thing is named."""
 POLES = {
@@ -123,6 +128,7 @@ class References:
     sentence: int = 0
     start: int = 0  # of the sentence in the text
     text: str = ""
+    host: Entity | None = None  # subject of *with*, whose phrase is read: 'a bread plate with a knife across the plate'
     holder: str | None = None  # relation of the phrase whose restrictions are read: 'in' for 'in the crate beside it'
     lost: list[Span] = field(default_factory=list)  # of the sentence, phrases that were not understood
     surface: Entity | None = None
@@ -191,12 +197,13 @@ class References:
 
     def _noun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
         noun, last = phrase.head, last_word(phrase.head)
-        if last in ABSTRACT and noun == last:
+        if last in ABSTRACT and (noun == last or last in _ACTS):
             return self._earlier(phrase) or self._new(phrase, Role.ABSTRACT)
         if last == VIEWER or (last in PEOPLE and noun == last):
             entity = self._earlier(phrase) or self._new(phrase, Role.VIEWER if last == VIEWER else Role.PERSON)
             return entity
-        if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another":
+        other = self.surface is not None and " " in noun and " " in self.surface.noun and noun != self.surface.noun
+        if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another" and not other:
             if self.surface is None:
                 self.surface = Entity(noun, Role.SURFACE, born=self.sentence)
             return self.surface
@@ -219,7 +226,7 @@ class References:
             counted = phrase.count is not None and phrase.of.count is None and phrase.of.determiner is None
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
             return self.find(inner, relation, besides)
-        earlier = self._earlier(phrase)
+        earlier = self._carrier(phrase, relation, besides) or self._earlier(phrase)
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
             itself = (
@@ -266,7 +273,8 @@ class References:
             entity.split(count)
         elif phrase.plural:
             entity.plural, entity.single = True, lump is not None
-            plural = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
+            plural = next((w for w in words if stem in singulars(w)), None)
+            plural = plural or next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
             if plural is not None:
                 entity.written = f"{phrase.head[: -len(stem)]}{plural}".strip()
         self.entities.append(entity)
@@ -275,6 +283,7 @@ class References:
     def _seen(self, entity: Entity, phrase: NounPhrase) -> Entity:
         words = self.words(phrase)
         entity.mention(words)
+        entity.compared = False
         if entity.members and entity.noun:
             for leaf in entity.leaves():
                 leaf.mention(words)
@@ -341,6 +350,7 @@ class References:
             key=lambda entity: (
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
                 and entity.born < self.sentence and entity.noun == phrase.head,
+                entity.compared,
                 entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
                 -entity.named if entity.noun != phrase.head else 0,  # 'the plate': the one that is named most often
@@ -369,6 +379,16 @@ class References:
                 return self.member(entity, phrase) or entity
             return entity
         return None
+
+    def _carrier(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
+        """Return the subject that a thing lies on: *the bread plate is here, with a knife across the plate*."""
+        last = self.recent[0] if self.recent and self.recent[0].sentence == self.sentence else None
+        host = self.host or (None if last is None or last.subject is None else last.subject.itself)
+        if host is None or besides is None or host is besides.itself or relation not in _CARRYING:
+            return None
+        bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
+        single = host.role is Role.THING and not (host.members or host.plural)
+        return host if bare and single and host.noun != phrase.head and _can_name(phrase.head, host) else None
 
     def _is_further(self, phrase: NounPhrase, entity: Entity) -> bool:
         """Return True for *the second panel* after *one panel*: another one, which is not counted from a side."""
@@ -764,6 +784,9 @@ class References:
                 entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
                 if entity.itself.members or entity is besides:
                     continue
+                poured = entity is focus.subject and focus.relation == "inside" and last_word(entity.noun) in SUBSTANCES
+                if poured and any(last_word(e.noun) in VESSELS for e in focus.others if e is not besides):
+                    continue  # 'fill the jug with milk and put it on the mat'
                 if entity.itself.plural and not entity.itself.single:
                     several = several or entity
                     continue

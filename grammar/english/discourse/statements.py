@@ -48,6 +48,9 @@ FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire"
 
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 
+_TOWARDS = frozenset({"toward", "towards"})
+"""Prepositions by which a part of a thing faces a side, but a whole thing lies nearer to it."""
+
 
 class Statements(Relations):
     """Reader of predicates."""
@@ -74,6 +77,8 @@ class Statements(Relations):
             if relation == "upside_down" or (subject.noun in FLEXIBLE and (apart or relation in DIRECTIONS)):
                 return  # the label, and not the bottle; the cable, and not the lamp
             subject = subject.whole
+        elif relation == "facing" and predicate.subject_part is None and _TOWARDS & set(predicate.adverbs):
+            return  # 'in the middle towards the bottom'
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
@@ -230,7 +235,9 @@ class Statements(Relations):
                 own = any(a.pronoun == "it" for p in phrase.predicates for a in p.arguments)
                 if own and subject.role is Role.THING:  # 'the bucket is by the hatch with the lemons beside it'
                     self.references.recent.insert(0, Focus(subject, [], None, self.how.sentence))
+                host, self.references.host = self.references.host, subject.itself
                 held = self._introduce(phrase, "with", subject)
+                self.references.host = host
                 if own and subject.role is Role.THING:
                     self.references.recent.pop(0)
                 part = (

@@ -43,7 +43,7 @@ count: few, fewer, fewest
 other: same, different, similar, identical, single, double, twin, sole, alone, separate, individual, only, whole, entire
 other: correct, right, wrong, particular, specific, certain, nice, pretty, comfy, comfortable, soft, hard, heavy, light
 other: modern, fancy, ornate, decorative, typical, normal, usual, additional, extra, remaining, various, visible, own
-other: immediate, direct, weird, strange, odd, funny, unusual, regular, standard, interesting, exact, last, final
+other: immediate, direct, weird, strange, odd, funny, unusual, regular, standard, equal, interesting, exact, last, final
 other: distinct, matching, opposite, electric, digital, electronic, industrial, domestic, personal, available, real
 other: warm, hot, cold, fresh, large-scale, such, actual, prominent, noticeable, obvious, lefty, empty, busy, ergonomic
 """
@@ -127,7 +127,7 @@ def is_material_noun(word: str) -> bool:
     return word in _MATERIAL_NOUNS
 
 
-_TOOLS = frozenset({"opener", "cleaner", "dryer", "shutter", "hotter"})
+_TOOLS = frozenset({"opener", "cleaner", "dryer", "shutter", "hotter", "topper"})
 """Nouns that look like the comparative of an adjective."""
 
 

@@ -30,6 +30,7 @@ IDIOMS = tuple(
         "check that",
         "see to it that",
         "right now",
+        *("one after another", "one after the other", "all at once", "all at one time", "in that order"),
         "next to useless",
         "next to nothing",
         "next to impossible",

@@ -171,6 +171,17 @@ ABSTRACT = frozenset(
         *("layout", "setup", "description", "instruction", "method", "procedure", "purpose"),
         *("blame", "pressure", "trust", "faith", "company", "care", "help", "thanks", "welcome"),
         *("trick", "advantage", "difficulty", "problem", "mistake", "effect", "mood", "atmosphere", "smell", "noise"),
+        *(
+            "ease",
+            "convenience",
+            "comfort",
+            "placement",
+            "exception",
+            "preference",
+            "highlight",
+            "elegance",
+            "efficiency",
+        ),
         *("silence", "weather", "tradition", "custom", "history", "law", "risk", "danger", "chance", "news"),
     ]
 )

@@ -39,7 +39,8 @@ NOT_PLACES = word_set(
 
 NEVER_PLACES = word_set(
     "contract law rule agreement pretence pretense impression influence auspices assumption supervision guidance"
-    " misapprehension spell popularity fame career power treaty"
+    " distance misapprehension spell popularity fame career power treaty"
+    " excerpt reference article preference manual text"
     " chapter paragraph agenda diet odds name circumstance principle nature rumour rumor honour honor behalf occasion"
 )
 """Nouns after which a preposition names no place, whatever stands before them: *under the contract*."""

@@ -63,6 +63,7 @@ posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range
 posture: plant, heap, drizzle, spoon, load, thread, sprinkle, pack, feed, tilt, swing swings swung swung swinging, scoop
 posture: travel, trail, dot, ladle, step
 other: replace, provide, require, protect, prevent, receive, create, explain, reduce, avoid, knock
+other: become becomes became become becoming
 other: rinse, tighten, loosen, unscrew, unplug, preheat, assemble, remove, repeat, mind, admire, inspect
 other: destroy, believe, weigh, bake, allow
 other: bind binds bound bound binding, upholster, gild, enamel, lacquer, varnish

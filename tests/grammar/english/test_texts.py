@@ -435,6 +435,87 @@ def test_constructs_of_how_to_texts_give_their_facts(text: str, expected: list[s
 
 
 @pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Lay a fish knife and fork beside the jug.", ["next_to(fish_knife, jug)", "next_to(fish_fork, jug)"]),
+        ("The soup spoon is in the jug. Put the dessert fork and spoon above the mat.",
+         ["inside(soup_spoon, jug)", "above(dessert_fork, mat)", "above(dessert_spoon, mat)"]),
+        ("A bread and butter plate stands left of the jug.", ["left(bread_plate, jug)"]),
+        ("Set a cheese or butter knife behind the jug.", ["behind(cheese_knife, jug)", "behind(butter_knife, jug)"]),
+        ("A mocha or teaspoon is in the jug.", ["inside(mocha, jug)", "inside(teaspoon, jug)"]),
+        ("A coffee or teaspoon is in the jug.", ["inside(coffee_spoon, jug)", "inside(teaspoon, jug)"]),
+        ("To the left of the jug we put the salt.", ["left(salt, jug)"]),
+        ("In the middle, just behind the jug, you should place the salt.", ["middle(salt)", "behind(salt, jug)"]),
+        ("There are mats in front of the jug. On those place the bowls.",
+         ["in_front(mats, jug)", "on(bowls, mats)"]),
+        ("The ladle is right of the jug. Further to the right lay the tongs.",
+         ["right(ladle, jug)", "right(tongs, ladle)"]),
+        ("In the back I put the jug, because I use it often.", ["part(jug, 'back')"]),
+        ("Put the bowl in the centre of the setting.", ["middle(bowl, setting)"]),
+        ("In a festive setting the jug is left of the bowl.", ["left(jug, bowl)"]),
+        ("The salt is to the left of and behind the jug and bowl.",
+         ["left(salt, jug)", "left(salt, bowl)", "behind(salt, jug)", "behind(salt, bowl)"]),
+        ("The ladle should lie above and parallel to the board.", ["above(ladle, board)", "parallel(ladle, board)"]),
+        ("Lay the cloths, folded in triangles or strips, behind the jug.", ["behind(cloths, jug)"]),
+        ("Spoons rolled in napkins are behind the jug.", ["inside(spoons, napkins)", "behind(spoons, jug)"]),
+        ("Based on an old custom, the salt stands behind the jug.", ["behind(salt, jug)"]),
+        ("1 Put the jug in the box\n2 Lay the ladle behind the jug\n3 place the salt above the tip of the ladle",
+         ["inside(jug, box)", "behind(ladle, jug)", "above(salt, ladle)"]),
+        ("Two jugs are in the box. 20/30 guests can sit in front of the jugs.",
+         ["inside(jug_1, box)", "inside(jug_2, box)"]),
+        ("The bowl is behind the jug towards the right.", ["behind(bowl, jug)"]),
+        ("The bowl is behind the jug, handle towards the right.", ["behind(bowl, jug)", "facing(bowl, 'right')"]),
+        ("Put the rakes left of the board with tines up.", ["left(rakes, board)", "pointing(rakes, 'up')"]),
+        ("The salt is on the box. Lay the chisel right of the board with the blade facing it.",
+         ["on(salt, box)", "right(chisel, board)", "facing(chisel, board)"]),
+        ("In a wedding dinner, guests eat one after another. The salt is behind the jug.", ["behind(salt, jug)"]),
+        ("Set the bowls behind the jug, at equal intervals.", ["behind(bowls, jug)"]),
+        ("Jugs have become a fashion in many boxes. The salt is behind the jug.", ["behind(salt, jug)"]),
+        ("Three guests can stand directly in front of the box. The salt is behind the jug.", ["behind(salt, jug)"]),
+        ("The placement of jugs on a box takes time. The salt is behind the jug.", ["behind(salt, jug)"]),
+        ("Opposite top left, we place the salt. The bowl is behind the jug.", ["behind(bowl, jug)"]),
+        ("Pour milk into the jug, or with a lid. Put it on the box.", ["on(jug, box)"]),
+        ("Fill the milk jug with milk. Put it behind the box.", ["behind(milk_jug, box)"]),
+        ("A lid in the jug or behind the box. The salt is behind the jug.", ["behind(salt, jug)"]),
+    ],
+)  # fmt: skip
+def test_constructs_of_place_settings_give_their_facts(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The dinner plate is behind the jug. The bread plate is left of it, with a knife across the plate.",
+         ["behind(dinner_plate, jug)", "left(bread_plate, dinner_plate)", "across(knife, bread_plate)"]),
+        ("The dinner plate is behind the jug. The bread plate is on the box, with a knife right of the dinner plate.",
+         ["behind(dinner_plate, jug)", "on(bread_plate, box)", "right(knife, dinner_plate)"]),
+        ("Put a side plate, which is smaller than a dinner plate, behind the jug. The fork is left of the plate.",
+         ["behind(side_plate, jug)", "left(fork, side_plate)"]),
+        ("A side plate, which is smaller than a dinner plate, is behind the jug. The fork is left of the plate.",
+         ["smaller(side_plate, dinner_plate)", "behind(side_plate, jug)", "left(fork, side_plate)"]),
+        ("- Ladle: A deep one for broth. It hangs left of the jug.", ["left(ladle, jug)"]),
+        ("- Top shelf: a bowl. The jug is in the box.", ["inside(jug, box)"]),
+        ("The gifts are on the guest table. Cards lie on a welcome table.",
+         ["on(gifts)", "on(cards, welcome_table)"]),
+        ("Put the cup next to the jug on the left-hand side.", ["next_to(cup, jug)", "left(cup, jug)"]),
+        ("In the hall knives forks salad bowl stand behind the jug. The salt is behind the jug.",
+         ["behind(salt, jug)"]),
+        ("As shown in the reference, the exception is on the box. The salt is behind the jug.",
+         ["behind(salt, jug)"]),
+        ("If in doubt, the salt goes behind the jug.", ["behind(salt, jug)"]),
+        ("If you aren't sure where it goes, put the salt behind the jug.", ["behind(salt, jug)"]),
+        ("If you do not need it, the salt goes behind the jug. The bowl is left of the jug.", ["left(bowl, jug)"]),
+        ("I am not sure whether the salt is behind the jug. The bowl is left of the jug.", ["left(bowl, jug)"]),
+        ("- A ring could be used. The cloth would then be put on the box instead of under the jug.\n"
+         "- A bowl could be added.\n- The salt is behind the jug.", ["behind(salt, jug)"]),
+    ],
+)  # fmt: skip
+def test_things_and_conditions_of_place_settings(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
     ("text", "absent"),
     [
         ("The cup is on the tray. The jug is not on the tray.", ("jug",)),
@@ -455,6 +536,9 @@ def test_what_is_not_on_the_surface_and_nowhere_else_is_absent(text: str, absent
         ("The jar is half a metre from the pot.", 0.5),
         ("The jar is approx. 40 cm to the right of the pot.", 0.4),
         ("The jar stands no closer than 10 cm to the pot.", 0.1),
+        ("The jar is 1/2 inch from the pot.", 0.0127),
+        ("The jar stands about 1/4-inch away from the pot.", 0.00635),
+        ("The jar is 1 1/2 metres from the pot.", 1.5),
     ],
 )
 def test_lengths_are_read_as_they_are_spoken(text: str, metres: float) -> None:
