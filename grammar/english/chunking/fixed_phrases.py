@@ -26,6 +26,8 @@ from deixis.grammar.english.vocabulary.nouns import PARTS
 from deixis.grammar.english.vocabulary.relation_words import (
     CIRCUMSTANCES,
     DIRECTION_WORDS,
+    HOLIDAYS,
+    OCCURRENCES,
     Preposition,
     places_alone,
     prepositions,
@@ -103,6 +105,8 @@ class FixedPhraseChunker(JointChunker):
         able = norm == "as" and self.norms[at + 1] in PRONOUNS and self.norms[at + 2] in ("can", "could", "may", "will")
         if able and self.norms[at + 4] in CLAUSE_ENDS and self.norms[at + 3].isalpha():
             return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
+        if (shown := self._as_shown(at)) is not None:
+            return Chunk("ADVERB", at, shown, "as shown")
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
             longer = related is not None and related[0] > end  # 'out of reach of the cat'
@@ -183,6 +187,8 @@ class FixedPhraseChunker(JointChunker):
             and not self.norms[at + 3].endswith("ing")
         ):  # fmt: skip
             return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'
+        if (end := self._time(at)) is not None:
+            return Chunk("ADVERB", at, end, "circumstance")
         circumstance = self._circumstance(at)
         if circumstance is not None and (related is None or related[0] <= at + 1):
             return Chunk("ADVERB", at, circumstance, "circumstance")
@@ -318,6 +324,34 @@ class FixedPhraseChunker(JointChunker):
             if not norm[:1].isalnum() or (norm in prepositions() and not several) or norm in IS_FORMS:
                 return None
         return None
+
+    def _as_shown(self, at: int) -> int | None:
+        """Return the end of *as shown below* and *as described earlier*; None for other phrases."""
+        if self.norms[at] != "as" or self.norms[at + 1] not in _TOLD:
+            return None
+        end = at + 2
+        while self.norms[end] in _IN_THE_TEXT:
+            end += 1
+        return None if self.nouns.starts(end) and self.norms[end - 1] in prepositions() else end
+
+    def _time(self, at: int) -> int | None:
+        """Return the end of *at the start of each round* and *on Christmas morning*; None for other phrases."""
+        if self.norms[at] not in _BEFORE_TIMES:
+            return None
+        i = at + 1 + (self.norms[at + 1] == "the")
+        if self.norms[i] in HOLIDAYS:
+            while self.norms[i] in HOLIDAYS or self.norms[i] in _DAYS:
+                i += 1
+            ends = not self.nouns.is_noun(i) or self.nouns.is_determiner(i) or self.norms[i] in PUT_VERBS
+            return i if ends and self.norms[i] != "'s" else None
+        if self.norms[i] not in _BEGINNINGS or self.norms[i + 1] != "of":
+            return None
+        end = i + 2
+        while self.nouns.is_determiner(end) or self.norms[end] in ("game", "new", "next", "first", "last"):
+            end += 1
+            if self.norms[end - 1] == "game" and self.norms[end] not in OCCURRENCES:
+                return end
+        return end + 1 if self.norms[end] in OCCURRENCES and not self.nouns.is_noun(end + 1) else None
 
     def _subject_or_command(self, at: int) -> bool:
         """Return True if a subject with a determiner, a personal pronoun or a command begins here."""
@@ -475,6 +509,20 @@ class FixedPhraseChunker(JointChunker):
 
 _OCCASIONS = word_set("case cases event instance situation situations household households")
 """Nouns that name no place if they are general: *in a rare case*, not *in the case*."""
+
+_TOLD = word_set(
+    "shown seen depicted pictured illustrated described explained indicated drawn displayed marked instructed directed"
+    " mentioned noted before above below"
+)
+"""Words after *as* that send the reader to a picture or to another part of the text."""
+
+_IN_THE_TEXT = word_set("below above here earlier opposite previously before overleaf")
+
+_BEFORE_TIMES = word_set("at on in from before after until till by since near over during around towards toward")
+
+_BEGINNINGS = word_set("start beginning outset end close middle conclusion course")
+
+_DAYS = word_set("day eve morning evening afternoon night monday friday sunday time week weekend season holiday")
 
 _GENERAL = word_set("a an any some many most more few other certain every each no this that which both all")
 

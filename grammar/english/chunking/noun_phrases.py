@@ -269,9 +269,10 @@ class NounChunker(ModifierFinder):
                 named = self._letter(i + 1)
                 if named is not None:
                     return lettered(named, i + 2)
-        shaped = bool(modifiers) and modifiers[-1].dimension == "shape"
-        if not nouns and shaped and determiner == "the" and len(modifiers) == 1 and self._nouns.knows(norms[i - 1]):
-            nouns, modifiers = [norms[i - 1]], ()  # 'facing the square'
+        shaped = bool(modifiers) and modifiers[-1].dimension == "shape" and self._nouns.knows(norms[i - 1])
+        named = (determiner == "the" and len(modifiers) == 1) or norms[i - 1] == "square"
+        if not nouns and shaped and named and (determiner is not None or owner is not None or count is not None):
+            nouns, modifiers = [norms[i - 1]], modifiers[:-1]  # 'facing the square', 'on a white square'
         if not nouns:
             if determiner is None and owner is None and count is None:
                 if len(modifiers) and any(a.dimension != "rank" for a in modifiers):

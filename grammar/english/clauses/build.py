@@ -27,6 +27,7 @@ from deixis.grammar.english.clauses.predicates import (
     with_support,
 )
 from deixis.grammar.english.tree import (
+    TOWARDS,
     Adjective,
     Degree,
     Measure,
@@ -34,10 +35,20 @@ from deixis.grammar.english.tree import (
     Predicate,
     Span,
     Viewpoint,
+    aimed,
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.function_words import PERSONS
-from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SUBSTANCES, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    FRONTS,
+    GAPS,
+    HOLDERS,
+    PARTS,
+    SUBSTANCES,
+    SURFACES,
+    VESSELS,
+    last_word,
+)
 from deixis.grammar.english.vocabulary.relation_words import (
     ARRANGEMENTS,
     CIRCUMSTANCES,
@@ -46,6 +57,7 @@ from deixis.grammar.english.vocabulary.relation_words import (
     NEVER_PLACES,
     NOT_PLACES,
     PLACE_NOUNS,
+    prepositions,
 )
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -283,6 +295,8 @@ class Builder(Transformer[Any, Built]):
         if shared := tuple(p for p in mods if "too" in p.adverbs):  # 'on the tray together with the jug'
             mods = tuple(p for p in mods if p not in shared)
             return Noun(_restricted(noun, mods) if mods else noun, shared)
+        if last_word(noun.head) in PARTS | FRONTS:
+            mods = tuple(map(aimed, mods))  # 'its handle toward the left'
         if noun.head == "back" and noun.owner is not None and mods[0].relation == "to":
             return Noun(_restricted(noun, (replace(mods[0], relation="facing"), *mods[1:])))
         if noun.head in _PARTS and mods[0].relation in ("facing", "pointing"):
@@ -343,8 +357,10 @@ class Builder(Transformer[Any, Built]):
         return Noun(self.complement(chunk, of, thing))
 
     def mods(self, *parts: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
-        """Return the restrictions of a noun phrase."""
-        return merged(parts, check=False)
+        """Return the restrictions of a noun phrase; the first of several alternatives restricts nothing either."""
+        found = merged(parts, check=False)
+        open_at = {i for i, p in enumerate(found) for i in (i - 1, i) if _OR in p.adverbs}
+        return tuple(p for i, p in enumerate(found) if i not in open_at)
 
     # predicates
 
@@ -363,8 +379,13 @@ class Builder(Transformer[Any, Built]):
             if aim in ("pointing", "facing") and denied.relation == "at" and not denied.positive:
                 group[0] = (replace(denied, relation=aim), *group[0][1:])  # 'pointing at it, not at me'
         made = [(link, merged(tuple(group), check=False)) for link, group in groups]
-        made = _shared(made)
-        return tuple(Said(predicates, link == "or", link == "but") for link, predicates in made)
+        found: list[Said] = []
+        for link, predicates in _shared(made):
+            others = [p for p in predicates if _OR in p.adverbs]
+            kept = tuple(p for p in predicates if _OR not in p.adverbs)
+            found.append(Said(kept, link == "or", link == "but"))
+            found += [Said((replace(p, adverbs=tuple(a for a in p.adverbs if a != _OR)),), True) for p in others]
+        return tuple(found)
 
     def pp(self, prep: Chunk, noun: Noun, than: Chunk | None, other: Noun | None) -> tuple[Predicate, ...]:
         """Return the predicates of a preposition and its object."""
@@ -374,6 +395,10 @@ class Builder(Transformer[Any, Built]):
         extra = noun.extra
         noun, its = _of_the_subject(noun)
         extra = (*extra, *its)
+        turned = noun.phrase.predicates[-1:]
+        if turned and turned[0].relation == "upside_down" and "that" not in turned[0].adverbs:
+            bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
+            noun, extra = Noun(bare, noun.extra), (*turned, *extra)  # 'lay the cards beside the board face down'
         if other is not None:
             span, extra = union(span, other.phrase.span), (*extra, *other.extra)
         last_end = noun.phrase.members[-1] if relation == "between" and noun.phrase.members else None
@@ -386,7 +411,14 @@ class Builder(Transformer[Any, Built]):
             target = next((p for p in (*noun.phrase.predicates, *extra) if p.relation == "to"), None)
             return () if target is None else (replace(target, relation="diagonal", span=span),)
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
-            return (*_places(relator, noun.phrase.members, span), *extra)
+            first, *more = _places(relator, noun.phrase.members, span)
+            if noun.phrase.joined_by == "or":  # 'in either the middle or the back of the crate'
+                more = [replace(p, adverbs=(*p.adverbs, _OR)) for p in more]
+            return (first, *more, *extra)
+        if relator.preposition.phrase in _TOWARDS and is_place(noun.phrase) and noun.phrase.head not in _NO_TARGETS:
+            here = replace(relator, preposition=prepositions()["at"], adverbs=(*relator.adverbs, TOWARDS))
+            found = place(here, noun.phrase, span)  # 'keep it toward the back of the shelf'
+            return (*(() if found is None else (found,)), *noun.phrase.predicates, *extra)
         side = PLACE_NOUNS.get(noun.phrase.head, "")
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
@@ -415,9 +447,10 @@ class Builder(Transformer[Any, Built]):
                 "level_with", tuple(a for p in noun.phrase.predicates if p.relation == "as" for a in p.arguments), span
             )
             return (*((level,) if level.arguments else ()), *directed, *extra)
-        if last_word(noun.phrase.head) in ("level", "height") and relation in ("at", "on"):
+        if last_word(noun.phrase.head) in _MEASURES and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            return extra
+            away = (replace(p, relation="far") for p in noun.phrase.predicates if p.relation == "from" and p.arguments)
+            return (*away, *extra)  # 'at a safe distance from the stove'
         last = noun.phrase.predicates[-1] if noun.phrase.predicates else None
         if (
             last is not None
@@ -447,9 +480,11 @@ class Builder(Transformer[Any, Built]):
         if relation == "material":
             word = Adjective(noun.phrase.head or "unknown", "material", Degree.PLAIN, noun.phrase.span)
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
-        if noun.phrase.head.rpartition(" ")[2] in ARRANGEMENTS | CIRCUMSTANCES and relation == "inside":
+        last_part = last_word(noun.phrase.head).rpartition("-")[2]  # 'in an L-shape'
+        if last_part in ARRANGEMENTS | CIRCUMSTANCES and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            return (Predicate("there", (), span, positive=relator.positive), *extra)
+            of_subject = noun.phrase.predicates if noun.phrase.determiner in ("a", "an", None) else ()
+            return (Predicate("there", (), span, positive=relator.positive), *of_subject, *extra)
         if relation == "by" and noun.phrase.owner is None and last_word(noun.phrase.head) in DEGREES:
             misunderstood(span, f"'{noun.phrase.head}' says how much, not where")
             return (*noun.phrase.predicates, *extra)  # 'turned by ninety degrees'
@@ -565,7 +600,9 @@ class Builder(Transformer[Any, Built]):
 
     def relative(self, rel: Chunk, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that stands on the tray*."""
-        return tuple(flat(verb))
+        return tuple(
+            replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in flat(verb)
+        )
 
     def reduced(self, rel: Chunk, said: tuple[Said, ...]) -> tuple[Predicate, ...]:
         """Return the predicates of *that next to the tray*."""
@@ -829,6 +866,12 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
     return found
 
 
+_TOWARDS = frozenset({"toward", "towards"})
+_NO_TARGETS = frozenset({"direction", "position", "area", "inside", "outside", "o'clock"})
+
+_OR = "or"
+"""Mark, among the adverbs of a place, of an alternative to the place before it."""
+
 _SHARING_PLACES = frozenset({"along with", "together with"})
 """Prepositions of a thing that is where the subject is: *the gloves are on the shelf, along with the goggles*."""
 
@@ -851,6 +894,9 @@ _AMOUNTS = word_set(
 """Nouns of an amount, before the substance or the things that are meant."""
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 
+
+_MEASURES = frozenset({"level", "height", "distance", "angle", "interval", "depth", "speed", "temperature", "pace"})
+"""Nouns after *at* that measure: *at a comfortable working distance*."""
 
 _MANNERS = word_set(
     "value price brand theme subject author mistake default law tradition custom rule accident chance colour color size"

@@ -12,6 +12,7 @@ from deixis.grammar.english.tree import (
     NounPhrase,
     Predicate,
     Span,
+    aimed,
 )
 from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
@@ -526,6 +527,8 @@ def _state(lemma: str, marker: Predicate) -> Predicate:
 
 def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Predicate:
     span = union(marker.span, following.span)
+    if kind in ("face", "point") or lemma in ("look", "aim", "lean") or lemma in _ROTATING:
+        following = aimed(following)
     relation, value, arguments = following.relation, following.value, following.arguments
     if relation == "to" and arguments and lemma in MOVING:
         relation = destination(following).relation

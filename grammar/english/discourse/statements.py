@@ -10,8 +10,9 @@ from deixis.grammar.english.discourse.mentions import SUPERLATIVES
 from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, SUPPORTS, Relations
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
-from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.tree import Degree, NounPhrase, Predicate, aimed
 from deixis.grammar.english.vocabulary.nouns import (
+    FRONTS,
     GAPS,
     GENERAL,
     HOLDERS,
@@ -55,6 +56,8 @@ class Statements(Relations):
     def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         if predicate.span in self.sentences[self.how.sentence].contested:
             self.how = self._guessed(Guess.CONTESTED)
+        if subject.role is Role.PART or predicate.subject_part is not None or subject.noun in PARTS | FRONTS:
+            predicate = aimed(predicate)
         relation = predicate.relation
         part_said = predicate.subject_part.head if predicate.subject_part is not None else ""
         self.part = last_word(subject.noun if subject.role is Role.PART else part_said)
