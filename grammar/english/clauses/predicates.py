@@ -416,6 +416,8 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
     if member.head in GAPS:
         return []
     for predicate in member.predicates:
+        if member.determiner == "the" and not member.plural:
+            predicate = aimed(predicate)  # 'with the cable hole towards the back'
         if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
             one = any(argument.pronoun == "it" and not argument.head for argument in predicate.arguments)
             predicate = replace(predicate, of_one=one)

@@ -27,7 +27,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.relation_words import prepositions
-from deixis.ontology.inflection import singulars
+from deixis.ontology.inflection import plural, singulars
 
 MAX_COUNTED = 1000
 """Largest number of a noun phrase that is read as so many things."""
@@ -65,6 +65,8 @@ OPPOSITES = {
     "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
     "on": "under", "under": "on", "top": "bottom", "bottom": "top",
 }  # fmt: skip
+_SIDES = frozenset({"side", "front", "back", "rear", "top", "bottom", "left", "right", "end", "middle", "upper", "lower"})
+"""Words that tell a thing from another one of its kind by its place: *the side rails*."""
 CORNERS = frozenset({"top_left", "top_right", "bottom_left", "bottom_right"})
 """Relations that name a corner of a thing or of the surface, where no other thing is named."""
 POLES = {
@@ -222,9 +224,8 @@ class References:
         earlier = self._earlier(phrase)
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
-            itself = (
-                None if phrase.adjectives and besides.noun != noun else earlier
-            )  # 'the oat milk behind the whole milk'
+            other = bool(phrase.adjectives) and besides.noun != noun  # 'the oat milk behind the whole milk'
+            itself = None if other or phrase.predicates else earlier  # 'two rods across the rods that have hooks'
             earlier = next((e for e in others if not _conflicting(e, phrase)), itself)
         of_it = phrase.owner is not None and phrase.owner.pronoun in ("it", "they")
         if of_it and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
@@ -266,9 +267,11 @@ class References:
             entity.split(count)
         elif phrase.plural:
             entity.plural, entity.single = True, lump is not None
-            plural = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
-            if plural is not None:
-                entity.written = f"{phrase.head[: -len(stem)]}{plural}".strip()
+            written = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
+            if written is not None:
+                entity.written = f"{phrase.head[: -len(stem)]}{written}".strip()
+            elif phrase.determiner == "the" and any(a.dimension == "position" for a in phrase.adjectives):
+                entity.written = plural(phrase.head)  # 'the front' of 'the front and back rails'
         self.entities.append(entity)
         return self._seen(entity, phrase)
 
@@ -334,13 +337,17 @@ class References:
         ):
             return None
         latest_first = self._named_like(phrase.head)
+        if any(a.word == "remaining" for a in phrase.adjectives):
+            return self._remaining(phrase, latest_first)
+        comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
+        general = phrase.plural and phrase.determiner is None and phrase.owner is None and comparative
         if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
             return several
         for entity in sorted(
             latest_first,
             key=lambda entity: (
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
-                and entity.born < self.sentence and entity.noun == phrase.head,
+                and entity.born < self.sentence and entity.noun == phrase.head and not _agreement(entity, phrase),
                 entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
                 -entity.named if entity.noun != phrase.head else 0,  # 'the plate': the one that is named most often
@@ -354,6 +361,8 @@ class References:
                 continue  # 'the two rails' after 'a rail'
             if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
+            if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
+                continue  # 'larger items' after 'sale items'
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (
@@ -368,6 +377,14 @@ class References:
             if entity.members and not phrase.plural and phrase.determiner not in ("each", "every", "all", "both"):
                 return self.member(entity, phrase) or entity
             return entity
+        return None
+
+    def _remaining(self, phrase: NounPhrase, latest_first: list[Entity]) -> Entity | None:
+        """Return the members of a group that *the remaining cups* leaves over; None if no group was told apart."""
+        for entity in latest_first:
+            left = [leaf for leaf in entity.leaves() if not leaf.is_picked] if entity.members else []
+            if left and len(left) < entity.size and _can_name(phrase.head, entity):
+                return left[0] if len(left) == 1 or not phrase.plural else Entity("", members=left)
         return None
 
     def _is_further(self, phrase: NounPhrase, entity: Entity) -> bool:
@@ -878,12 +895,23 @@ def _can_name(head: str, entity: Entity) -> bool:
 
 
 def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
-    """Return True for *the back door* after *the pantry door*: the longer name has no side."""
-    sides = {a.word for a in phrase.adjectives if a.dimension == "position" and a.degree is Degree.PLAIN}
-    if entity.members or entity.plural or entity.group is not None:
-        return False
+    """Return True for *the back door* after *the pantry door*: the longer name has no side.
+
+    The same holds of *the black piece* after *the side pieces*, and of *the front rail* after *the side rails*.
+    """
+    told = {
+        (a.dimension, a.word) for a in phrase.adjectives
+        if a.dimension in ("position", "colour") and a.degree is Degree.PLAIN
+    }  # fmt: skip
     longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
-    return longer and bool(sides) and not any(("position", word) in entity.adjectives for word in sides)
+    if not longer or not told or told & entity.adjectives or entity.noun.startswith(tuple(w for _, w in told)):
+        return False
+    sides = _SIDES.intersection(entity.noun.split()[:-1])
+    lateral = all(word in ("left", "right") for _, word in told) and sides == {"side"}
+    if any(d == "position" for d, _ in told) and sides and not lateral:
+        return True  # but 'the left panel' is one of the side panels
+    several = entity.members or entity.plural or entity.group is not None
+    return not several or (any(d == "colour" for d, _ in told) and not phrase.plural)
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:

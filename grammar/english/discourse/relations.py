@@ -90,6 +90,9 @@ class Relations(Mentions):
             relation = f"exactly_{relation}"
         if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
+        single = subject.size == 1 and not subject.plural
+        if relation == "each_side" and single and self.how.optional:
+            relation = "next_to"  # 'the pump can stand on either side of the sink'
         forms = all(last_word(a.head) in _FORMS and a.determiner not in ("the", "each") for a in predicate.arguments)
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
@@ -181,8 +184,7 @@ class Relations(Mentions):
             return
         if relation == "among" and self.text[slice(*predicate.span)].casefold().startswith(("of ", "out of ")):
             return  # 'of the two cups one is on the tray'
-        single = subject.size == 1 and not subject.plural and not entities
-        if single and relation in _OF_SEVERAL:
+        if single and not entities and relation in _OF_SEVERAL:
             return
         if relation in COLLECTIVE and not (relation == "stacked" and entities):
             if subject.itself.members:

@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     GENERAL,
     HOLDERS,
     PARTS,
+    PLACES_OF,
     SUBSTANCES,
     SURFACES,
     VESSELS,
@@ -24,6 +25,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     VIEWER_WORDS,
     last_word,
 )
+from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -195,7 +197,7 @@ class Statements(Relations):
                 and phrase.determiner in ("a", "an")
             ):
                 self._add("kind", (subject,), (), value=plain_noun(phrase.head))
-            if phrase.predicates:
+            if phrase.predicates and not (phrase.head in PLACE_NOUNS or phrase.head in PLACES_OF):
                 self._say(subject, phrase.predicates, phrase, focus=False)
 
     def _say_ordinal(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
