@@ -110,6 +110,7 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in said
             )
+        said = _with_contents(raws.phrase, said)
         if said and (group.lemma in WRAPPING or group.lemma in _FASTENING):
             said = tuple(replace(part, predicates=by_means(group.lemma, part.predicates)) for part in said)
         if group.lemma in MOVING and said:
@@ -411,10 +412,10 @@ class Builder(Transformer[Any, Built]):
             target = next((p for p in (*noun.phrase.predicates, *extra) if p.relation == "to"), None)
             return () if target is None else (replace(target, relation="diagonal", span=span),)
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
-            first, *more = _places(relator, noun.phrase.members, span)
+            spots = _places(relator, noun.phrase.members, span)
             if noun.phrase.joined_by == "or":  # 'in either the middle or the back of the crate'
-                more = [replace(p, adverbs=(*p.adverbs, _OR)) for p in more]
-            return (first, *more, *extra)
+                spots[1:] = [replace(p, adverbs=(*p.adverbs, _OR)) for p in spots[1:]]
+            return (*spots, *extra)
         if relator.preposition.phrase in _TOWARDS and is_place(noun.phrase) and noun.phrase.head not in _NO_TARGETS:
             here = replace(relator, preposition=prepositions()["at"], adverbs=(*relator.adverbs, TOWARDS))
             found = place(here, noun.phrase, span)  # 'keep it toward the back of the shelf'
@@ -624,6 +625,20 @@ class Builder(Transformer[Any, Built]):
     def whose(self, whose: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *whose handle points to the right*."""
         return tuple(replace(p, subject_part=noun.phrase) for p in flat(verb))
+
+
+def _with_contents(thing: NounPhrase, said: tuple[Said, ...] | None) -> tuple[Said, ...] | None:
+    """Return the place after *place the bowl with rice to the right* as that of the bowl, and not of the rice."""
+    first = said[0].predicates[:1] if said else ()
+    held = first[0].arguments[0] if first and first[0].relation == "with" and len(first[0].arguments) == 1 else None
+    alone = said is not None and len(said) == 1 and len(said[0].predicates) == 1
+    bare = held is not None and held.determiner is None and held.count is None and held.owner is None
+    if said is None or held is None or not (alone and bare) or not held.predicates or not held.head:
+        return said
+    if last_word(thing.head) in SURFACES - {"tray"} or thing.members:
+        return said  # 'lay the table with forks on the left'
+    holds = replace(first[0], arguments=(replace(held, predicates=()),))
+    return (Said((holds, *held.predicates)),)
 
 
 def _is_absolute(predicate: Predicate) -> bool:
