@@ -192,6 +192,9 @@ class FixedPhraseChunker(JointChunker):
         circumstance = self._circumstance(at)
         if circumstance is not None and (related is None or related[0] <= at + 1):
             return Chunk("ADVERB", at, circumstance, "circumstance")
+        tried = norm == "try" and self.norms[at + 1] == "to" and self.norms[at + 2] in PUT_VERBS and previous_joint
+        if tried and self.nouns.starts(at + 3):  # 'try to keep the lamp behind it'
+            return Chunk("PUT", at, at + 3, VerbGroup(self.norms[at + 2], "posture", "base"))
         if norm in _STARTING and self.norms[at + 1] in ("by", "with") and previous_joint:
             form = self._verbs.get(self.norms[at + 2])
             if form is not None and form.form == "ing" and form.lemma in PUT_VERBS:

@@ -173,6 +173,7 @@ class NounChunker(ModifierFinder):
                     form = self._verbs.get(after)
                     goes_on = form is None or self.is_noun(later) or form.form in ("participle", "past")
                     noun = not is_adjective(after) or self.adjective_before_noun(later) or is_material_noun(after)
+                    noun = noun or after == "square"
                     if goes_on and noun:
                         return None
             elif (

@@ -585,8 +585,9 @@ class NounFinder:
             ]
         if is_adjective(self.norms[at]):
             return False  # 'top box', 'lower shelf'
-        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]):
-            return False
+        adverbs = all(norm in ADVERBS or norm in (",", "next", "first", "then") for norm in self.norms[:at])
+        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]) and not adverbs:
+            return False  # but 'also, pack heavy items at the bottom'
         rest = self.norms[after : after + 12]
         ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
         rest, mark = rest[:ends], rest[ends : ends + 1]
@@ -754,6 +755,8 @@ class NounFinder:
 
     def _noun_here(self, at: int, nouns: list[str]) -> bool:
         norm = self.norms[at]
+        if norm == "put":
+            return False
         if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
             return False
         form = self._verbs.get(norm)

@@ -174,7 +174,7 @@ class Builder(Transformer[Any, Built]):
             _, nominal, said = parts
             noun = nominal
             shown = said or ()
-            if noun is not None and noun.extra:
+            if noun is not None and noun.extra and noun.phrase.head not in ("area", "part", "section", "spot", "place"):
                 shown = (Said(noun.extra), *shown)
             return Verb(group, shown, chunk.span, noun)
         if chunk.type == "VERB":
@@ -436,6 +436,11 @@ class Builder(Transformer[Any, Built]):
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
             return extra
+        vague = noun.phrase.head in ("area", "section", "portion") and noun.phrase.determiner in ("a", "an", "any")
+        if vague and not directions_of(noun.phrase) and noun.phrase.of is None and relation in ("inside", "at", "on"):
+            misunderstood(span, "this does not say which place is meant")
+            near = tuple(p for p in (*noun.phrase.predicates, *extra) if p.positive and p.arguments)
+            return (Predicate("there", (), span, positive=relator.positive), *near)
         found = _positioned(relator, noun.phrase, span)
         if found is not None:
             main, rest = _with_argument(found, (*noun.phrase.predicates, *extra))

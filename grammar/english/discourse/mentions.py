@@ -81,7 +81,8 @@ class Mentions(Drafting, ABC):
                 if predicate.relation in ("end", "side") and self._at_each(predicate):
                     return self._introduce(replace(subject, count=2, determiner=None, plural=True))
                 for argument in predicate.arguments:
-                    if argument.determiner in ("each", "every"):
+                    of_each = argument.pronoun == "each" and not argument.head and argument.of is not None
+                    if argument.determiner in ("each", "every") or of_each:
                         group = self.references.find(argument)
                         if group is not None and group.size > 1:
                             self.how = replace(self.how, quantifier="each")
@@ -285,7 +286,7 @@ class Mentions(Drafting, ABC):
             and phrase.determiner in ("a", "an") and phrase.head and not phrase.plural
         ):  # fmt: skip
             return self._introduce(replace(phrase, determiner=None, count=subject.size, plural=True))
-        if phrase.determiner in ("each", "every"):
+        if phrase.determiner in ("each", "every") or (phrase.pronoun == "each" and phrase.of is not None):
             self.how = replace(self.how, quantifier="each")
         found = self._introduce(phrase, relation, subject)
         if (

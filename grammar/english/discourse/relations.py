@@ -426,8 +426,10 @@ class Relations(Mentions):
             self._pair(subject, predicate.relation, contrasted, False)
             return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
+        high = self.text[slice(*predicate.span)].casefold().startswith(("up ", "high up", "at top"))
         if (
             predicate.part is None
+            and not high  # 'the bowls are up top'
             and last is not None
             and last.role is Role.THING
             and self.how.positive
