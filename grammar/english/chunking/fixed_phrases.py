@@ -195,6 +195,9 @@ class FixedPhraseChunker(JointChunker):
         tried = norm == "try" and self.norms[at + 1] == "to" and self.norms[at + 2] in PUT_VERBS and previous_joint
         if tried and self.nouns.starts(at + 3):  # 'try to keep the lamp behind it'
             return Chunk("PUT", at, at + 3, VerbGroup(self.norms[at + 2], "posture", "base"))
+        avoided = self._verbs.get(self.norms[at + 1]) if norm == "avoid" and previous_joint else None
+        if avoided is not None and avoided.form == "ing" and avoided.lemma in PUT_VERBS and self.nouns.starts(at + 2):
+            return Chunk("PUT", at, at + 2, VerbGroup(avoided.lemma, "posture", "base", positive=False))
         if norm in _STARTING and self.norms[at + 1] in ("by", "with") and previous_joint:
             form = self._verbs.get(self.norms[at + 2])
             if form is not None and form.form == "ing" and form.lemma in PUT_VERBS:

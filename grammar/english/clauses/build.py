@@ -112,7 +112,7 @@ class Builder(Transformer[Any, Built]):
             )
         said = _with_contents(raws.phrase, said)
         if said and (group.lemma in WRAPPING or group.lemma in _FASTENING):
-            said = tuple(replace(part, predicates=by_means(group.lemma, part.predicates)) for part in said)
+            said = tuple(replace(part, predicates=by_means(group.lemma, raws.phrase, part.predicates)) for part in said)
         if group.lemma in MOVING and said:
             said = tuple(
                 replace(

@@ -145,7 +145,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 ]
                 i += 1
                 continue
-            if following is not None and lemma in _RANGING and following.relation not in ("row", "with", "inside"):
+            ranged = following is not None and lemma in _RANGING and not following.reversed
+            if ranged and following is not None and following.relation not in ("row", "with", "inside"):
                 found.append(Predicate("row", (), predicate.span, positive=predicate.positive))
             if following is not None and lemma in _SHAPING and "into" in following.adverbs:
                 misunderstood(following.span, "this says what shape something gets, not where it is")
@@ -316,13 +317,15 @@ def destination(predicate: Predicate) -> Predicate:
     return replace(predicate, relation=relation)
 
 
-def by_means(lemma: str, predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+def by_means(lemma: str, thing: NounPhrase, predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
     """Return the predicates of a command with *with* read as what it uses: a cover, or a tool, which is left out.
 
     Parameters
     ----------
     lemma
         Verb in its base form.
+    thing
+        Object of the verb.
     predicates
         What stands after the verb.
 
@@ -335,7 +338,9 @@ def by_means(lemma: str, predicates: tuple[Predicate, ...]) -> tuple[Predicate, 
     for predicate in predicates:
         bare = predicate.relation == "with" and not any(a.predicates for a in predicate.arguments)
         if bare and predicate.subject_part is None and lemma in WRAPPING:
-            found.append(replace(predicate, relation=WRAPPING[lemma], reversed=True))
+            inner = lemma == "line" and last_word(thing.head) in VESSELS | HOLDERS  # 'line the box with paper'
+            relation = "inside" if inner else WRAPPING[lemma]
+            found.append(replace(predicate, relation=relation, reversed=True))
         elif not bare:
             found.append(predicate)
     return tuple(found)
