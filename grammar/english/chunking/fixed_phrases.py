@@ -105,6 +105,8 @@ class FixedPhraseChunker(JointChunker):
         able = norm == "as" and self.norms[at + 1] in PRONOUNS and self.norms[at + 2] in ("can", "could", "may", "will")
         if able and self.norms[at + 4] in CLAUSE_ENDS and self.norms[at + 3].isalpha():
             return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
+        if (examples := self._examples(at)) is not None:
+            return Chunk("ADVERB", at, examples, "such as")
         if (shown := self._as_shown(at)) is not None:
             return Chunk("ADVERB", at, shown, "as shown")
         for phrase in _idioms().get(norm, ()):
@@ -330,6 +332,27 @@ class FixedPhraseChunker(JointChunker):
             if not norm[:1].isalnum() or (norm in prepositions() and not several) or norm in IS_FORMS:
                 return None
         return None
+
+    def _examples(self, at: int) -> int | None:
+        """Return the end of *such as yogurt and cheese* after a noun; None for other phrases."""
+        if self.norms[at : at + 2] != ["such", "as"] or self._previous() != "NP":
+            return None
+        end = at + 2
+        while self.norms[end]:
+            found = self.nouns.phrase(end, "PREP")
+            if found is None or found[1] is None or found[1].pronoun is not None:
+                return None
+            end = found[0]
+            joint = end
+            while self.norms[joint] in (",", "and", "or") and joint < len(self.words):
+                joint += 1
+            verb = self._verbs.get(self.norms[joint])
+            if self.norms[joint] in ("etc", "etc."):
+                return joint + 1
+            if joint == end or verb is not None or not self.nouns.starts(joint) or self.nouns.is_determiner(joint):
+                return end
+            end = joint
+        return end
 
     def _as_shown(self, at: int) -> int | None:
         """Return the end of *as shown below* and *as described earlier*; None for other phrases."""
