@@ -189,8 +189,8 @@ class FixedPhraseChunker(JointChunker):
             and not self.norms[at + 3].endswith("ing")
         ):  # fmt: skip
             return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'
-        if (end := self._time(at)) is not None:
-            return Chunk("ADVERB", at, end, "circumstance")
+        if (after := self._time(at)) is not None:
+            return Chunk("ADVERB", at, after, "circumstance")
         circumstance = self._circumstance(at)
         if circumstance is not None and (related is None or related[0] <= at + 1):
             return Chunk("ADVERB", at, circumstance, "circumstance")

@@ -271,8 +271,8 @@ class NounChunker(ModifierFinder):
                 if named is not None:
                     return lettered(named, i + 2)
         shaped = bool(modifiers) and modifiers[-1].dimension == "shape" and self._nouns.knows(norms[i - 1])
-        named = (determiner == "the" and len(modifiers) == 1) or norms[i - 1] == "square"
-        if not nouns and shaped and named and (determiner is not None or owner is not None or count is not None):
+        noun_here = (determiner == "the" and len(modifiers) == 1) or norms[i - 1] == "square"
+        if not nouns and shaped and noun_here and (determiner is not None or owner is not None or count is not None):
             nouns, modifiers = [norms[i - 1]], modifiers[:-1]  # 'facing the square', 'on a white square'
         if not nouns:
             if determiner is None and owner is None and count is None:

@@ -396,10 +396,10 @@ class Builder(Transformer[Any, Built]):
         extra = noun.extra
         noun, its = _of_the_subject(noun)
         extra = (*extra, *its)
-        turned = noun.phrase.predicates[-1:]
-        if turned and turned[0].relation == "upside_down" and "that" not in turned[0].adverbs:
+        last_said = noun.phrase.predicates[-1:]
+        if last_said and last_said[0].relation == "upside_down" and "that" not in last_said[0].adverbs:
             bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
-            noun, extra = Noun(bare, noun.extra), (*turned, *extra)  # 'lay the cards beside the board face down'
+            noun, extra = Noun(bare, noun.extra), (*last_said, *extra)  # 'lay the cards beside the board face down'
         if other is not None:
             span, extra = union(span, other.phrase.span), (*extra, *other.extra)
         last_end = noun.phrase.members[-1] if relation == "between" and noun.phrase.members else None
@@ -436,6 +436,9 @@ class Builder(Transformer[Any, Built]):
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
             return extra
+        lining = noun.phrase.head == "inside" and relation in ("around", "along", "against")
+        if lining and noun.phrase.of is not None:  # 'tuck towels around the inside of the crate'
+            return (Predicate("inside", (noun.phrase.of,), span, positive=relator.positive), *extra)
         vague = noun.phrase.head in ("area", "section", "portion") and noun.phrase.determiner in ("a", "an", "any")
         if vague and not directions_of(noun.phrase) and noun.phrase.of is None and relation in ("inside", "at", "on"):
             misunderstood(span, "this does not say which place is meant")
@@ -606,9 +609,7 @@ class Builder(Transformer[Any, Built]):
 
     def relative(self, rel: Chunk, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that stands on the tray*."""
-        return tuple(
-            replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in flat(verb)
-        )
+        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in flat(verb))
 
     def reduced(self, rel: Chunk, said: tuple[Said, ...]) -> tuple[Predicate, ...]:
         """Return the predicates of *that next to the tray*."""

@@ -63,7 +63,9 @@ REVOKED = re.compile(
     re.IGNORECASE,
 )
 """End of a sentence that takes back what it said: *…, but we don't*."""
-_PUTTING = "placing|putting|laying|positioning|arranging|keeping|storing|installing|mounting|attaching|adding|moving|stacking"
+_PUTTING = (
+    "placing|putting|laying|positioning|arranging|keeping|storing|installing|mounting|attaching|adding|moving|stacking"
+)
 UNREAL = re.compile(
     r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
     r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather|sooner)\b"

@@ -303,5 +303,5 @@ _BESIDE = DIRECTIONS | {"near", "next_to", "between", "under", "opposite"}
 _LIMBS = frozenset({"elbow", "hand", "arm", "foot", "knee", "shoulder", "side"})
 
 
-_SIDES = frozenset({"left", "right"})
-"""Nouns that name a side and no thing, of which nothing is said."""
+_SIDES = frozenset({"left", "right", "furthest", "farthest", "closest", "nearest"})
+"""Nouns that name a side or a degree and no thing, of which nothing is said."""

@@ -65,7 +65,9 @@ OPPOSITES = {
     "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
     "on": "under", "under": "on", "top": "bottom", "bottom": "top",
 }  # fmt: skip
-_SIDES = frozenset({"side", "front", "back", "rear", "top", "bottom", "left", "right", "end", "middle", "upper", "lower"})
+_SIDES = frozenset(
+    ["side", "front", "back", "rear", "top", "bottom", "left", "right", "end", "middle", "upper", "lower"]
+)
 """Words that tell a thing from another one of its kind by its place: *the side rails*."""
 CORNERS = frozenset({"top_left", "top_right", "bottom_left", "bottom_right"})
 """Relations that name a corner of a thing or of the surface, where no other thing is named."""
@@ -267,9 +269,9 @@ class References:
             entity.split(count)
         elif phrase.plural:
             entity.plural, entity.single = True, lump is not None
-            written = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
-            if written is not None:
-                entity.written = f"{phrase.head[: -len(stem)]}{written}".strip()
+            in_text = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
+            if in_text is not None:
+                entity.written = f"{phrase.head[: -len(stem)]}{in_text}".strip()
             elif phrase.determiner == "the" and any(a.dimension == "position" for a in phrase.adjectives):
                 entity.written = plural(phrase.head)  # 'the front' of 'the front and back rails'
         self.entities.append(entity)
@@ -393,7 +395,11 @@ class References:
         counted = any(p.relation == "ordinal" for p in phrase.predicates)
         alone = not (entity.members or entity.plural or entity.group is not None)
         ranked = any(dimension == "rank" for dimension, _ in entity.adjectives)
-        return alone and not ranked and rank is not None and rank > 1 and not counted and not phrase.plural
+        longer = entity.noun != phrase.head and not entity.was_called(
+            phrase.head
+        )  # 'the last hole' after 'an exit hole'
+        further = rank is not None and (rank > 1 or (rank < 0 and longer))
+        return alone and not ranked and further and not counted and not phrase.plural
 
     def _named_like(self, head: str) -> list[Entity]:
         """Return the known objects whose noun, or another noun for them, has the same last word, the latest first."""

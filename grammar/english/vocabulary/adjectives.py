@@ -40,10 +40,10 @@ state: dead, crooked, rotated, slanted, sideways, freestanding, standalone, free
 state: framed, padded, cushioned, striped, patterned, checkered, plaid, floral, solid, plain, dotted, worn, used, unused
 state: uncovered, parallel, perpendicular, stationary, askew, slim-line, ajar, level
 count: few, fewer, fewest
-other: same, different, similar, identical, equal, single, double, twin, sole, alone, separate, individual, only, whole, entire
+other: same, different, similar, identical, single, double, twin, sole, alone, separate, individual, only, whole, entire
 other: correct, right, wrong, particular, specific, certain, nice, pretty, comfy, comfortable, soft, hard, heavy, light
 other: modern, fancy, ornate, decorative, typical, normal, usual, additional, extra, remaining, various, visible, own
-other: immediate, direct, weird, strange, odd, funny, unusual, regular, standard, interesting, exact, last, final
+other: immediate, equal, direct, weird, strange, odd, funny, unusual, regular, standard, interesting, exact, last, final
 other: distinct, matching, opposite, electric, digital, electronic, industrial, domestic, personal, available, real
 other: warm, hot, cold, fresh, large-scale, such, actual, prominent, noticeable, obvious, lefty, empty, busy, ergonomic
 """
