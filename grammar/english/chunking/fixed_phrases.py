@@ -194,6 +194,10 @@ class FixedPhraseChunker(JointChunker):
         circumstance = self._circumstance(at)
         if circumstance is not None and (related is None or related[0] <= at + 1):
             return Chunk("ADVERB", at, circumstance, "circumstance")
+        if norm in _FITTING and self.norms[at + 1] == "in" and previous_joint and self.nouns.is_determiner(at + 2):
+            return Chunk("PUT", at, at + 2, VerbGroup(norm, "posture", "base"))  # 'plug in the cable next to it'
+        if norm in PUT_VERBS and self._previous() == "AND" and self.norms[at + 1 : at + 3] == ["in", "place"]:
+            return Chunk("ADVERB", at, at + 3, "in place")  # 'press it against the frame and secure in place'
         tried = norm == "try" and self.norms[at + 1] == "to" and self.norms[at + 2] in PUT_VERBS and previous_joint
         if tried and self.nouns.starts(at + 3):  # 'try to keep the lamp behind it'
             return Chunk("PUT", at, at + 3, VerbGroup(self.norms[at + 2], "posture", "base"))
@@ -553,6 +557,9 @@ _BEGINNINGS = word_set("start beginning outset end close middle conclusion cours
 
 _DAYS = word_set("day eve morning evening afternoon night monday friday sunday time week weekend season holiday")
 
+_FITTING = frozenset({"plug", "slot", "screw", "push", "snap", "slide"})
+"""Verbs of which *in* is a part: *plug in the cable*."""
+
 _GENERAL = word_set("a an any some many most more few other certain every each no this that which both all")
 
 _STARTING = word_set("begin start commence finish continue")
@@ -570,7 +577,7 @@ _DENIALS = tuple(
 
 _JUDGEMENTS = word_set(
     "true clear certain important essential vital good bad nice best better the case fact sure acceptable fine polite"
-    " proper correct customary usual common traditional advisable"
+    " proper correct customary usual common traditional advisable idea convenient useful helpful wise sensible"
 )
 
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
@@ -581,7 +588,7 @@ _STEPS = word_set("first second third next last lastly finally")
 _GOVERNORS = word_set(
     "remember sure forget need needs have has had got important essential necessary vital crucial best better good"
     " helpful useful advisable advised recommended time ready proceed continue begin start care careful required want"
-    " is are step"
+    " is are step idea convenient wise sensible"
 )
 """Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
 

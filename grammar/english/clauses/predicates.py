@@ -32,7 +32,7 @@ WRAPPING = {"cover": "on", "top": "on", "line": "on", "fill": "inside", "pack": 
 """Relation of what a command uses to the thing that it changes: *cover the bowl with a cloth*."""
 _ATTACHING = word_set(
     "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect"
-    " join fasten tie hook link stick pin clip clamp wire"
+    " join fasten tie hook link stick pin clip clamp wire press"
 )
 """Verbs after which *to* means that two things touch."""
 AWAY_FROM = {"off": "on", "off of": "on", "out of": "inside"}

@@ -437,6 +437,12 @@ class Relations(Mentions):
             and not GROUNDS.search(self.text[slice(*predicate.span)])
         ):
             before = next(f for f in self.references.recent if f.subject is not subject)
+            stated = self.drafts[-1] if self.drafts else None
+            level = stated.value if stated is not None and stated.relation == "part" and not stated.arguments else None
+            part = {("top", "below"): "bottom", ("bottom", "above"): "top"}.get((level or "", predicate.relation))
+            if part is not None and stated is not None and stated.how.sentence == self.how.sentence:
+                self._add("part", (subject,), (), value=part)  # 'jars up top, and pans below'
+                return
             opposite = OPPOSITES.get(before.relation or "") == predicate.relation
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:
                 last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'

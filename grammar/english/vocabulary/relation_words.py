@@ -43,7 +43,7 @@ NOT_PLACES = word_set(
     " shape danger need debt love peace pain tears luck vain theory principle practice belief reach scope"
     " sight suspicion investigation way secret private writing effect force action motion progress later ease"
     " error pretext heaven hour minute month week year season harmony arrival departure entry delivery completion"
-    " reflection inspection impulse"
+    " reflection inspection impulse place"
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
 
@@ -74,6 +74,7 @@ behind: from behind, out from behind, on the far side of, the far side of
 -: as shown in, as seen in, as described in, as explained in, in the shape of, in the form of, in terms of
 -: in full view of, in plain view of, in view of, within sight of, in the event of, for the use of, for use by
 -: at the disposal of, in the presence of, in the absence of, to the delight of, at the request of, in charge of
+-: by means of, by way of, by virtue of
 -: clockwise from, counterclockwise from, anticlockwise from, clockwise of
 far: far from, far away from, away from, well away from, as far as possible from, as far away as possible from
 near: as close as possible to, as near as possible to
