@@ -201,6 +201,9 @@ class FixedPhraseChunker(JointChunker):
         tried = norm == "try" and self.norms[at + 1] == "to" and self.norms[at + 2] in PUT_VERBS and previous_joint
         if tried and self.nouns.starts(at + 3):  # 'try to keep the lamp behind it'
             return Chunk("PUT", at, at + 3, VerbGroup(self.norms[at + 2], "posture", "base"))
+        if norm == "using" and self._previous() == "COMMA" and any(c.type == "PUT" for c in self.chunks):
+            end = next(i for i in range(at, len(self.words) + 1) if self.norms[i] in CLAUSE_ENDS)
+            return Chunk("ADVERB", at, end, "using")  # 'screw it to the beam, using a bolt on each side'
         avoided = self._verbs.get(self.norms[at + 1]) if norm == "avoid" and previous_joint else None
         if avoided is not None and avoided.form == "ing" and avoided.lemma in PUT_VERBS and self.nouns.starts(at + 2):
             return Chunk("PUT", at, at + 2, VerbGroup(avoided.lemma, "posture", "base", positive=False))

@@ -159,9 +159,9 @@ class NounChunker(ModifierFinder):
             return None
         if norm == "which" and previous == "PREP":
             return PRONOUNS[norm]  # 'a till in which three saws hang'
-        if norm in ("this", "that", "these") and previous == "PREP" and self.norms[at + 1] in ("place", "put", "lay"):
-            if self.is_determiner(at + 2):
-                return PRONOUNS[norm]  # 'on top of this place the jug'
+        fronted = norm in ("this", "that", "these") and previous == "PREP" and self.is_determiner(at + 2)
+        if fronted and self.norms[at + 1] in ("place", "put", "lay"):
+            return PRONOUNS[norm]  # 'on top of this place the jug'
         if norm == "that" and previous in ("BE", "VERB", "TVERB") and not self._nounish(at + 1):
             return None
         if norm in DETERMINERS or norm == "one":

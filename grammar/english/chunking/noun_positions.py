@@ -582,6 +582,8 @@ class NounFinder:
             or self.norms[after] in ("it", "them", "both", "all")
         ):
             return self.norms[after] not in ("that", "which")
+        if self.norms[after : after + 2] in (["at", "least"], ["at", "most"]):
+            return self.number(after + 2) is not None
         if not self.starts(after):
             return self.norms[after] in ("out", "up", "down", "away", "off") or self.norms[at : at + 2] == [
                 "turn",

@@ -456,7 +456,8 @@ class Builder(Transformer[Any, Built]):
                 "level_with", tuple(a for p in noun.phrase.predicates if p.relation == "as" for a in p.arguments), span
             )
             return (*((level,) if level.arguments else ()), *directed, *extra)
-        if last_word(noun.phrase.head) in _MEASURES and relation in ("at", "on"):
+        told = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
+        if (last_word(noun.phrase.head) in _MEASURES or told) and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             away = (replace(p, relation="far") for p in noun.phrase.predicates if p.relation == "from" and p.arguments)
             return (*away, *extra)  # 'at a safe distance from the stove'
@@ -490,7 +491,8 @@ class Builder(Transformer[Any, Built]):
             word = Adjective(noun.phrase.head or "unknown", "material", Degree.PLAIN, noun.phrase.span)
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
         last_part = last_word(noun.phrase.head).rpartition("-")[2]  # 'in an L-shape'
-        if last_part in ARRANGEMENTS | CIRCUMSTANCES and relation == "inside":
+        shown = last_part in _PICTURES and noun.phrase.determiner in ("this", "that", "the")
+        if (last_part in ARRANGEMENTS | CIRCUMSTANCES or shown) and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             of_subject = noun.phrase.predicates if noun.phrase.determiner in ("a", "an", None) else ()
             return (Predicate("there", (), span, positive=relator.positive), *of_subject, *extra)
@@ -916,6 +918,9 @@ _AMOUNTS = word_set(
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 
 
+_PICTURES = frozenset({"picture", "photo", "photograph", "image", "diagram", "video", "illustration", "drawing"})
+_POINTED_AT = frozenset({"spot", "point", "place", "location", "stage"})
+"""Nouns after *at that*, which go back to a place that was told before."""
 _MEASURES = frozenset({"level", "height", "distance", "angle", "interval", "depth", "speed", "temperature", "pace"})
 """Nouns after *at* that measure: *at a comfortable working distance*."""
 

@@ -14,7 +14,15 @@ from deixis.grammar.english.discourse.references import POLES, REGIONS, Focus, R
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.adjectives import is_material_noun
-from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    PARTS,
+    PLACES_OF,
+    SUBSTANCES,
+    SURFACES,
+    VESSELS,
+    VIEWER_WORDS,
+    last_word,
+)
 from deixis.ontology.graph.claims import PLACES
 
 VERB_AFTER = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
@@ -67,8 +75,8 @@ class Mentions(Drafting, ABC):
 
     def _subject(self, subject: NounPhrase, predicates: tuple[Predicate, ...]) -> Entity | None:
         """Return the subject of a clause; one new object for each member of a group that an argument quantifies."""
-        if subject.head in _SIDES:
-            return None
+        if subject.head in _SIDES or (subject.head in PLACES_OF and subject.owner is None and subject.of is None):
+            return None  # 'the best place for a lamp is behind the sofa'
         if (
             subject.determiner in ("a", "an", None)
             and subject.head

@@ -65,6 +65,8 @@ OPPOSITES = {
     "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
     "on": "under", "under": "on", "top": "bottom", "bottom": "top",
 }  # fmt: skip
+_FURTHER = re.compile(r"^.{0,12}\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
+"""Words before other things of a kind than those before."""
 _SIDES = frozenset(
     ["side", "front", "back", "rear", "top", "bottom", "left", "right", "end", "middle", "upper", "lower"]
 )
@@ -235,6 +237,7 @@ class References:
         if earlier is not None:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
+        several = several and not any(a.dimension == "colour" for a in phrase.adjectives)
         if several and last in GENERAL and noun == last:
             return None  # 'the following items'
         if phrase.owner is not None:
@@ -339,6 +342,8 @@ class References:
         ):
             return None
         latest_first = self._named_like(phrase.head)
+        if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[1]]):
+            return None
         if any(a.word == "remaining" for a in phrase.adjectives):
             return self._remaining(phrase, latest_first)
         comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
@@ -363,6 +368,11 @@ class References:
                 continue  # 'the two rails' after 'a rail'
             if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
+            coloured = {("colour", a.word) for a in phrase.adjectives if a.dimension == "colour"}
+            if coloured and entity.members and phrase.plural and not any(
+                coloured & leaf.adjectives for leaf in entity.leaves()
+            ):  # fmt: skip
+                continue  # 'the white pieces' after '12 pieces'
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
             if entity.group is not None and entity.group in self.entities:
