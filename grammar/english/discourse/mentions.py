@@ -75,7 +75,8 @@ class Mentions(Drafting, ABC):
 
     def _subject(self, subject: NounPhrase, predicates: tuple[Predicate, ...]) -> Entity | None:
         """Return the subject of a clause; one new object for each member of a group that an argument quantifies."""
-        if subject.head in _SIDES or (subject.head in PLACES_OF and subject.owner is None and subject.of is None):
+        best = any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives)
+        if subject.head in _SIDES or (subject.head in PLACES_OF and best):
             return None  # 'the best place for a lamp is behind the sofa'
         if (
             subject.determiner in ("a", "an", None)
