@@ -920,7 +920,7 @@ _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 
 _PICTURES = frozenset({"picture", "photo", "photograph", "image", "diagram", "video", "illustration", "drawing"})
 _POINTED_AT = frozenset({"spot", "point", "place", "location", "stage"})
-"""Nouns after *at that*, which go back to a place that was told before."""
+"""Nouns after *at that*, which go back to a place named before."""
 _MEASURES = frozenset({"level", "height", "distance", "angle", "interval", "depth", "speed", "temperature", "pace"})
 """Nouns after *at* that measure: *at a comfortable working distance*."""
 
