@@ -6,13 +6,15 @@ facts of a script, and :mod:`deixis.workflows.descriptions.refer` turns a descri
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from deixis.grammar.english.confidence import Guess
 
 Span = tuple[int, int]
 """First and last character of a phrase in the text, counted from 0, the end exclusive."""
+TOWARDS = "toward"
+"""Mark, among its adverbs, of a place that was named after *toward*: what can aim there faces it."""
 
 
 class Mood(StrEnum):
@@ -199,3 +201,24 @@ class Sentence:
     def understood(self) -> float:
         """Share of the words that were understood."""
         return self.words_understood / self.words if self.words else 1.0
+
+
+def aimed(predicate: Predicate) -> Predicate:
+    """Return *toward the left* as the direction that its subject faces.
+
+    Parameters
+    ----------
+    predicate
+        Predicate of a part, or of what a verb turns.
+
+    Returns
+    -------
+    Predicate
+        Direction for a place that was named after *toward*; another predicate as it is.
+    """
+    if TOWARDS not in predicate.adverbs:
+        return predicate
+    side = (predicate.part or predicate.relation).replace("_", " ")
+    aim = Adjective(side, "position", Degree.PLAIN, predicate.span)
+    adverbs = tuple(adverb for adverb in predicate.adverbs if adverb != TOWARDS)
+    return replace(predicate, relation="facing", arguments=(), value=aim, part=None, adverbs=adverbs)

@@ -26,6 +26,8 @@ from deixis.grammar.english.vocabulary.nouns import PARTS
 from deixis.grammar.english.vocabulary.relation_words import (
     CIRCUMSTANCES,
     DIRECTION_WORDS,
+    HOLIDAYS,
+    OCCURRENCES,
     Preposition,
     places_alone,
     prepositions,
@@ -103,6 +105,10 @@ class FixedPhraseChunker(JointChunker):
         able = norm == "as" and self.norms[at + 1] in PRONOUNS and self.norms[at + 2] in ("can", "could", "may", "will")
         if able and self.norms[at + 4] in CLAUSE_ENDS and self.norms[at + 3].isalpha():
             return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
+        if (examples := self._examples(at)) is not None:
+            return Chunk("ADVERB", at, examples, "such as")
+        if (shown := self._as_shown(at)) is not None:
+            return Chunk("ADVERB", at, shown, "as shown")
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
             longer = related is not None and related[0] > end  # 'out of reach of the cat'
@@ -183,9 +189,24 @@ class FixedPhraseChunker(JointChunker):
             and not self.norms[at + 3].endswith("ing")
         ):  # fmt: skip
             return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'
+        if (after := self._time(at)) is not None:
+            return Chunk("ADVERB", at, after, "circumstance")
         circumstance = self._circumstance(at)
         if circumstance is not None and (related is None or related[0] <= at + 1):
             return Chunk("ADVERB", at, circumstance, "circumstance")
+        if norm in _FITTING and self.norms[at + 1] == "in" and previous_joint and self.nouns.is_determiner(at + 2):
+            return Chunk("PUT", at, at + 2, VerbGroup(norm, "posture", "base"))  # 'plug in the cable next to it'
+        if norm in PUT_VERBS and self._previous() == "AND" and self.norms[at + 1 : at + 3] == ["in", "place"]:
+            return Chunk("ADVERB", at, at + 3, "in place")  # 'press it against the frame and secure in place'
+        tried = norm == "try" and self.norms[at + 1] == "to" and self.norms[at + 2] in PUT_VERBS and previous_joint
+        if tried and self.nouns.starts(at + 3):  # 'try to keep the lamp behind it'
+            return Chunk("PUT", at, at + 3, VerbGroup(self.norms[at + 2], "posture", "base"))
+        if norm == "using" and self._previous() == "COMMA" and any(c.type == "PUT" for c in self.chunks):
+            end = next(i for i in range(at, len(self.words) + 1) if self.norms[i] in CLAUSE_ENDS)
+            return Chunk("ADVERB", at, end, "using")  # 'screw it to the beam, using a bolt on each side'
+        avoided = self._verbs.get(self.norms[at + 1]) if norm == "avoid" and previous_joint else None
+        if avoided is not None and avoided.form == "ing" and avoided.lemma in PUT_VERBS and self.nouns.starts(at + 2):
+            return Chunk("PUT", at, at + 2, VerbGroup(avoided.lemma, "posture", "base", positive=False))
         if norm in _STARTING and self.norms[at + 1] in ("by", "with") and previous_joint:
             form = self._verbs.get(self.norms[at + 2])
             if form is not None and form.form == "ing" and form.lemma in PUT_VERBS:
@@ -319,6 +340,55 @@ class FixedPhraseChunker(JointChunker):
             if not norm[:1].isalnum() or (norm in prepositions() and not several) or norm in IS_FORMS:
                 return None
         return None
+
+    def _examples(self, at: int) -> int | None:
+        """Return the end of *such as yogurt and cheese* after a noun; None for other phrases."""
+        if self.norms[at : at + 2] != ["such", "as"] or self._previous() != "NP":
+            return None
+        end = at + 2
+        while self.norms[end]:
+            found = self.nouns.phrase(end, "PREP")
+            if found is None or found[1] is None or found[1].pronoun is not None:
+                return None
+            end = found[0]
+            joint = end
+            while self.norms[joint] in (",", "and", "or") and joint < len(self.words):
+                joint += 1
+            verb = self._verbs.get(self.norms[joint])
+            if self.norms[joint] in ("etc", "etc."):
+                return joint + 1
+            if joint == end or verb is not None or not self.nouns.starts(joint) or self.nouns.is_determiner(joint):
+                return end
+            end = joint
+        return end
+
+    def _as_shown(self, at: int) -> int | None:
+        """Return the end of *as shown below* and *as described earlier*; None for other phrases."""
+        if self.norms[at] != "as" or self.norms[at + 1] not in _TOLD:
+            return None
+        end = at + 2
+        while self.norms[end] in _IN_THE_TEXT:
+            end += 1
+        return None if self.nouns.starts(end) and self.norms[end - 1] in prepositions() else end
+
+    def _time(self, at: int) -> int | None:
+        """Return the end of *at the start of each round* and *on Christmas morning*; None for other phrases."""
+        if self.norms[at] not in _BEFORE_TIMES:
+            return None
+        i = at + 1 + (self.norms[at + 1] == "the")
+        if self.norms[i] in HOLIDAYS:
+            while self.norms[i] in HOLIDAYS or self.norms[i] in _DAYS:
+                i += 1
+            ends = not self.nouns.is_noun(i) or self.nouns.is_determiner(i) or self.norms[i] in PUT_VERBS
+            return i if ends and self.norms[i] != "'s" else None
+        if self.norms[i] not in _BEGINNINGS or self.norms[i + 1] != "of":
+            return None
+        end = i + 2
+        while self.nouns.is_determiner(end) or self.norms[end] in ("game", "new", "next", "first", "last"):
+            end += 1
+            if self.norms[end - 1] == "game" and self.norms[end] not in OCCURRENCES:
+                return end
+        return end + 1 if self.norms[end] in OCCURRENCES and not self.nouns.is_noun(end + 1) else None
 
     def _subject_or_command(self, at: int) -> bool:
         """Return True if a subject with a determiner, a personal pronoun or a command begins here."""
@@ -477,6 +547,23 @@ class FixedPhraseChunker(JointChunker):
 _OCCASIONS = word_set("case cases event instance situation situations household households")
 """Nouns that name no place if they are general: *in a rare case*, not *in the case*."""
 
+_TOLD = word_set(
+    "shown seen depicted pictured illustrated described explained indicated drawn displayed marked instructed directed"
+    " mentioned noted before above below"
+)
+"""Words after *as* that send the reader to a picture or to another part of the text."""
+
+_IN_THE_TEXT = word_set("below above here earlier opposite previously before overleaf")
+
+_BEFORE_TIMES = word_set("at on in from before after until till by since near over during around towards toward")
+
+_BEGINNINGS = word_set("start beginning outset end close middle conclusion course")
+
+_DAYS = word_set("day eve morning evening afternoon night monday friday sunday time week weekend season holiday")
+
+_FITTING = frozenset({"plug", "slot", "screw", "push", "snap", "slide"})
+"""Verbs of which *in* is a part: *plug in the cable*."""
+
 _GENERAL = word_set("a an any some many most more few other certain every each no this that which both all")
 
 _STARTING = word_set("begin start commence finish continue")
@@ -494,7 +581,7 @@ _DENIALS = tuple(
 
 _JUDGEMENTS = word_set(
     "true clear certain important essential vital good bad nice best better the case fact sure acceptable fine polite"
-    " proper correct customary usual common traditional advisable"
+    " proper correct customary usual common traditional advisable idea convenient useful helpful wise sensible"
 )
 
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
@@ -505,7 +592,7 @@ _STEPS = word_set("first second third next last lastly finally")
 _GOVERNORS = word_set(
     "remember sure forget need needs have has had got important essential necessary vital crucial best better good"
     " helpful useful advisable advised recommended time ready proceed continue begin start care careful required want"
-    " is are step"
+    " is are step idea convenient wise sensible"
 )
 """Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
 

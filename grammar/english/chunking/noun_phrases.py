@@ -159,6 +159,9 @@ class NounChunker(ModifierFinder):
             return None
         if norm == "which" and previous == "PREP":
             return PRONOUNS[norm]  # 'a till in which three saws hang'
+        fronted = norm in ("this", "that", "these") and previous == "PREP" and self.is_determiner(at + 2)
+        if fronted and self.norms[at + 1] in ("place", "put", "lay"):
+            return PRONOUNS[norm]  # 'on top of this place the jug'
         if norm == "that" and previous in ("BE", "VERB", "TVERB") and not self._nounish(at + 1):
             return None
         if norm in DETERMINERS or norm == "one":
@@ -173,6 +176,7 @@ class NounChunker(ModifierFinder):
                     form = self._verbs.get(after)
                     goes_on = form is None or self.is_noun(later) or form.form in ("participle", "past")
                     noun = not is_adjective(after) or self.adjective_before_noun(later) or is_material_noun(after)
+                    noun = noun or after == "square"
                     if goes_on and noun:
                         return None
             elif (
@@ -269,9 +273,10 @@ class NounChunker(ModifierFinder):
                 named = self._letter(i + 1)
                 if named is not None:
                     return lettered(named, i + 2)
-        shaped = bool(modifiers) and modifiers[-1].dimension == "shape"
-        if not nouns and shaped and determiner == "the" and len(modifiers) == 1 and self._nouns.knows(norms[i - 1]):
-            nouns, modifiers = [norms[i - 1]], ()  # 'facing the square'
+        shaped = bool(modifiers) and modifiers[-1].dimension == "shape" and self._nouns.knows(norms[i - 1])
+        noun_here = (determiner == "the" and len(modifiers) == 1) or norms[i - 1] == "square"
+        if not nouns and shaped and noun_here and (determiner is not None or owner is not None or count is not None):
+            nouns, modifiers = [norms[i - 1]], modifiers[:-1]  # 'facing the square', 'on a white square'
         if not nouns:
             if determiner is None and owner is None and count is None:
                 if len(modifiers) and any(a.dimension != "rank" for a in modifiers):

@@ -268,7 +268,11 @@ class NounFinder:
             "on",
         ):
             return norm == "left" and self.norms[at + 1] == "on"
-        return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at) or self.is_participle_of_one(at)
+        if norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at) or self.is_participle_of_one(at):
+            return True
+        after_preposition = at > 0 and (self.norms[at - 1] == "of" or self.norms[at - 1] in prepositions())
+        shaped = norm.endswith("ed") and len(norm) > 4 and self._nouns.knows(self.norms[at + 1])
+        return after_preposition and shaped and self.is_noun(at + 1)  # 'with crumpled paper'
 
     def is_participle_of_one(self, at: int) -> bool:
         """Return True for an unknown participle before *one* or *ones*: *unfired ones*.
@@ -582,6 +586,8 @@ class NounFinder:
             or self.norms[after] in ("it", "them", "both", "all")
         ):
             return self.norms[after] not in ("that", "which")
+        if self.norms[after : after + 2] in (["at", "least"], ["at", "most"]):
+            return self.number(after + 2) is not None
         if not self.starts(after):
             return self.norms[after] in ("out", "up", "down", "away", "off") or self.norms[at : at + 2] == [
                 "turn",
@@ -589,11 +595,14 @@ class NounFinder:
             ]
         if is_adjective(self.norms[at]):
             return False  # 'top box', 'lower shelf'
-        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]):
-            return False
+        adverbs = all(norm in ADVERBS or norm in (",", "next", "first", "then") for norm in self.norms[:at])
+        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]) and not adverbs:
+            return False  # but 'also, pack heavy items at the bottom'
         rest = self.norms[after : after + 12]
         ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
-        rest, mark = rest[:ends], rest[ends : ends + 1]
+        if rest[ends : ends + 1] == [","] and "and" in rest[ends:]:
+            ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS and norm != ","), len(rest))
+        rest, mark = rest[:ends], rest[ends : ends + 1]  # 'store milk, eggs and butter in the door'
         states = any(norm in IS_FORMS or norm in MODALS or self._stands(after + i) for i, norm in enumerate(rest))
         return mark != [":"] and not states and any(norm in prepositions() for norm in rest[1:])
 
@@ -758,6 +767,8 @@ class NounFinder:
 
     def _noun_here(self, at: int, nouns: list[str]) -> bool:
         norm = self.norms[at]
+        if norm == "put":
+            return False
         if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
             return False
         form = self._verbs.get(norm)

@@ -222,6 +222,8 @@ class RelatorChunker:
                 and self.norms[at] == "right"
             ):
                 return None  # an adverb: 'right behind'
+            if self.norms[at] == "around" and self.norms[alone[0]] in prepositions():
+                return None  # 'from sliding around on the floor'
             if alone[1].relation in ("up", "down") and self._previous() == "PART" and self.norms[at - 1] in _ROLLED:
                 return None  # 'rolled up and leaning against it'
             if alone[1].relation in ("up", "down") and self.norms[alone[0]] in ("and", "or"):
@@ -378,7 +380,7 @@ _SPOTS = frozenset({"corner", "edge", "end", "side", "part"})
 
 def _names_part(phrase: NounPhrase) -> bool:
     """Return True for *bowls* in *six spoons, bowls downwards*, and False for *four covers* in *four covers down*."""
-    bare = phrase.determiner is None and phrase.count is None
+    bare = bool(phrase.head) and phrase.determiner is None and phrase.count is None
     return bare or last_word(phrase.head) in PARTS | FRONTS
 
 

@@ -7,10 +7,19 @@ from dataclasses import replace
 
 from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
-from deixis.grammar.english.vocabulary.function_words import DETERMINERS, POSSESSIVES
+from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
+    DETERMINERS,
+    IS_FORMS,
+    MODALS,
+    POSSESSIVES,
+    PRONOUNS,
+)
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
 from deixis.grammar.english.vocabulary.nouns import EVENTS, SUBSTANCES
+from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 
 _ONE_THING = frozenset({("bread", "butter"), ("cheese", "wine"), ("salt", "pepper")})
 """Modifiers of one thing: *a cheese and wine set*."""
@@ -34,9 +43,23 @@ _SIZES = frozenset({"size", "sized"})
 _ENDINGS = ("spoon", "cup")
 """Nouns that are also written as the end of one word: *teaspoon*, *teacup*."""
 
+_OPPOSITES = (
+    {"front", "back"}, {"front", "rear"}, {"left", "right"}, {"top", "bottom"}, {"upper", "lower"}, {"inner", "outer"},
+    {"side", "back"}, {"side", "front"}, {"side", "top"}, {"side", "bottom"}, {"first", "second"},
+)  # fmt: skip
+"""Pairs of modifiers that no single thing has both of."""
+
+_CLOSED = DETERMINERS | POSSESSIVES.keys() | PRONOUNS.keys() | IS_FORMS | MODALS.keys() | ADVERBS | {"and", "or", "but"}
+"""Words that are in no noun phrase between its modifiers and its head."""
+
+_MAX_HEAD = 3
+"""Largest number of words of a shared head: *the left and right surround speakers*."""
+
 
 def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
     """Return the words of a sentence with the words that coordinated compounds share in each of them.
+
+    Opposite sides share any plural that is not a place: *the front and back rails*, but not *the left and right sides*.
 
     Parameters
     ----------
@@ -78,7 +101,10 @@ def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
         if not opens or first == second or not joint.isalpha():
             continue
         if joint in ("and", "or"):
-            shared = _shared_head(found, at, nouns)
+            opposite = {first, second} in _OPPOSITES
+            plural = _plural_head(found, at + 3, nouns) if opposite and (first, second) not in _ONE_THING else []
+            shared = None if plural else _shared_head(found, at, nouns)
+            found[at + 1 : at + 1] = [Word(word, word, found[at].start, found[at].end, False) for word in plural]
             if shared is not None:
                 found.insert(at + 1, Word(shared, shared, found[at].start, found[at].end, False))
         elif second in ("and", "or") and _share_modifier(first, joint, head, nouns):
@@ -109,3 +135,18 @@ def _shared_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> str | Non
     several = joint == "or" or nouns.singular(head)[1]
     modified = first in _USES and (second in _USES or nouns.knows(f"{second} {head}"))
     return head if several and modified and nouns.knows(head) else None
+
+
+def _plural_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> list[str]:
+    """Return the words of a plural that begins at a word: *surround speakers*; none for a place and a singular."""
+    head: list[str] = []
+    for word in words[at : at + _MAX_HEAD]:
+        if not word.norm.isalpha() or word.norm in prepositions() or word.norm in _CLOSED:
+            return []
+        head.append(word.norm)
+        one, plural = nouns.singular(word.norm)
+        form = verb_forms().get(word.norm)
+        if plural:
+            said = form is not None and form.form == "s" and not nouns.knows(word.norm)
+            return [] if one in PLACE_NOUNS or said else head
+    return []

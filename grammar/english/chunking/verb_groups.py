@@ -592,7 +592,9 @@ class VerbChunker(RelatorChunker):
         )
 
     def _imperative_object(self, at: int) -> bool:
-        return self.nouns.starts(at) or self.norms[at] in ("out", "for", "on", "to", "up", "both", "all")
+        bound = self.norms[at : at + 2] in (["at", "least"], ["at", "most"]) and self._measure(at) is None
+        bound = bound and self.nouns.number(at + 2) is not None
+        return bound or self.nouns.starts(at) or self.norms[at] in ("out", "for", "on", "to", "up", "both", "all")
 
     def _auxiliary(self, at: int) -> bool:
         norm = self.norms[at]

@@ -20,6 +20,9 @@ from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _REFERS_BACK = re.compile(r"\b(?:it|them|they|these|those)\b", re.IGNORECASE)
 """Pronouns that can stand for a thing of a condition."""
+_ALTERNATIVE = re.compile(r"\bor\b", re.IGNORECASE)
+_LAST_OF_ALL = re.compile(r"\b(?:finally|lastly|last\s+of\s+all)\b", re.IGNORECASE)
+"""Words before the last step of several."""
 _OWN = re.compile(r"\b(?:his|her)\b", re.IGNORECASE)
 """Owner of a part of the body: *he has a chip on his shoulder*."""
 _FRAMES = frozenset({"facing", "from"})
@@ -188,6 +191,8 @@ class Assembly:
             return  # it holds now
         if link in ("whatever", "whichever"):
             return  # it holds in any case
+        if link == "whether" and not self.clauses and _ALTERNATIVE.search(self.text[slice(*span)]):
+            return  # 'whether the shelf is low or high, put the jar on it'
         if link == "in case" and self.clauses:
             return  # a reason: 'a copy is in the box in case the first is lost'
         if link == "while" and self.clauses and built.verbs and built.verbs[0].group.lemma == "be":
@@ -504,6 +509,11 @@ class Assembly:
                 for one in waiting:
                     self._append(Clause(one, (), one.span, mood, existential=True, step=self.raw.step), link)
                 member, waiting = replace(member, predicates=made), []
+            between = self.text[waiting[-1].span[1] : member.span[0]] if waiting else ""
+            if member.predicates and _LAST_OF_ALL.search(between):  # 'the queen, the king, and finally a rook on it'
+                for one in waiting:
+                    self._append(Clause(one, (), one.span, mood, existential=True, step=self.raw.step), link)
+                waiting = []
             waiting.append(replace(member, predicates=()))
             if not member.predicates:
                 continue

@@ -27,6 +27,7 @@ from deixis.grammar.english.clauses.predicates import (
     with_support,
 )
 from deixis.grammar.english.tree import (
+    TOWARDS,
     Adjective,
     Degree,
     Measure,
@@ -34,11 +35,13 @@ from deixis.grammar.english.tree import (
     Predicate,
     Span,
     Viewpoint,
+    aimed,
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.function_words import PERSONS
 from deixis.grammar.english.vocabulary.nouns import (
     AIMED_PARTS,
+    FRONTS,
     GAPS,
     HOLDERS,
     PARTS,
@@ -55,6 +58,7 @@ from deixis.grammar.english.vocabulary.relation_words import (
     NEVER_PLACES,
     NOT_PLACES,
     PLACE_NOUNS,
+    prepositions,
 )
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -107,8 +111,9 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in said
             )
+        said = _with_contents(raws.phrase, said)
         if said and (group.lemma in WRAPPING or group.lemma in _FASTENING):
-            said = tuple(replace(part, predicates=by_means(group.lemma, part.predicates)) for part in said)
+            said = tuple(replace(part, predicates=by_means(group.lemma, raws.phrase, part.predicates)) for part in said)
         if group.lemma in MOVING and said:
             said = tuple(
                 replace(
@@ -170,7 +175,7 @@ class Builder(Transformer[Any, Built]):
             _, nominal, said = parts
             noun = nominal
             shown = said or ()
-            if noun is not None and noun.extra:
+            if noun is not None and noun.extra and noun.phrase.head not in ("area", "part", "section", "spot", "place"):
                 shown = (Said(noun.extra), *shown)
             return Verb(group, shown, chunk.span, noun)
         if chunk.type == "VERB":
@@ -296,6 +301,8 @@ class Builder(Transformer[Any, Built]):
         if shared := tuple(p for p in mods if "too" in p.adverbs):  # 'on the tray together with the jug'
             mods = tuple(p for p in mods if p not in shared)
             return Noun(_restricted(noun, mods) if mods else noun, shared)
+        if last_word(noun.head) in PARTS | FRONTS:
+            mods = tuple(map(aimed, mods))  # 'its handle toward the left'
         if noun.head == "back" and noun.owner is not None and mods[0].relation == "to":
             return Noun(_restricted(noun, (replace(mods[0], relation="facing"), *mods[1:])))
         if noun.head in _PARTS and mods[0].relation in ("facing", "pointing"):
@@ -356,8 +363,10 @@ class Builder(Transformer[Any, Built]):
         return Noun(self.complement(chunk, of, thing))
 
     def mods(self, *parts: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
-        """Return the restrictions of a noun phrase."""
-        return merged(parts, check=False)
+        """Return the restrictions of a noun phrase; the first of several alternatives restricts nothing either."""
+        found = merged(parts, check=False)
+        open_at = {i for i, p in enumerate(found) for i in (i - 1, i) if _OR in p.adverbs}
+        return tuple(p for i, p in enumerate(found) if i not in open_at)
 
     # predicates
 
@@ -376,8 +385,13 @@ class Builder(Transformer[Any, Built]):
             if aim in ("pointing", "facing") and denied.relation == "at" and not denied.positive:
                 group[0] = (replace(denied, relation=aim), *group[0][1:])  # 'pointing at it, not at me'
         made = [(link, merged(tuple(group), check=False)) for link, group in groups]
-        made = _shared(made)
-        return tuple(Said(predicates, link == "or", link == "but") for link, predicates in made)
+        found: list[Said] = []
+        for link, predicates in _shared(made):
+            others = [p for p in predicates if _OR in p.adverbs]
+            kept = tuple(p for p in predicates if _OR not in p.adverbs)
+            found.append(Said(kept, link == "or", link == "but"))
+            found += [Said((replace(p, adverbs=tuple(a for a in p.adverbs if a != _OR)),), True) for p in others]
+        return tuple(found)
 
     def pp(self, prep: Chunk, noun: Noun, than: Chunk | None, other: Noun | None) -> tuple[Predicate, ...]:
         """Return the predicates of a preposition and its object."""
@@ -387,6 +401,15 @@ class Builder(Transformer[Any, Built]):
         extra = noun.extra
         noun, its = _of_the_subject(noun)
         extra = (*extra, *its)
+        aims = [p for p in noun.phrase.predicates if TOWARDS in p.adverbs and not p.arguments]
+        if aims:  # 'behind the jug towards the right'
+            misunderstood(aims[0].span, "this does not say of what this is a direction")
+            kept = tuple(p for p in noun.phrase.predicates if p not in aims)
+            noun = Noun(replace(noun.phrase, predicates=kept), noun.extra)
+        last_said = noun.phrase.predicates[-1:]
+        if last_said and last_said[0].relation == "upside_down" and "that" not in last_said[0].adverbs:
+            bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
+            noun, extra = Noun(bare, noun.extra), (*last_said, *extra)  # 'lay the cards beside the board face down'
         if other is not None:
             span, extra = union(span, other.phrase.span), (*extra, *other.extra)
         last_end = noun.phrase.members[-1] if relation == "between" and noun.phrase.members else None
@@ -402,7 +425,14 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, "this does not say what is on the other side")
             return (*noun.phrase.predicates, *extra)  # 'opposite left'
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
-            return (*_places(relator, noun.phrase.members, span), *extra)
+            spots = _places(relator, noun.phrase.members, span)
+            if noun.phrase.joined_by == "or":  # 'in either the middle or the back of the crate'
+                spots[1:] = [replace(p, adverbs=(*p.adverbs, _OR)) for p in spots[1:]]
+            return (*spots, *extra)
+        if relator.preposition.phrase in _TOWARDS and is_place(noun.phrase) and noun.phrase.head not in _NO_TARGETS:
+            here = replace(relator, preposition=prepositions()["at"], adverbs=(*relator.adverbs, TOWARDS))
+            found = place(here, noun.phrase, span)  # 'keep it toward the back of the shelf'
+            return (*(() if found is None else (found,)), *noun.phrase.predicates, *extra)
         side = PLACE_NOUNS.get(noun.phrase.head, "")
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
@@ -417,9 +447,22 @@ class Builder(Transformer[Any, Built]):
         if person is not None and viewed and relation in ("at", "on", "inside", "to"):  # 'the window at my back'
             return (Predicate("behind", (person,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
+        told = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
+        if (last_word(noun.phrase.head) in _MEASURES or told) and relation in ("at", "on"):
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")
+            away = (replace(p, relation="far") for p in noun.phrase.predicates if p.relation == "from" and p.arguments)
+            return (*away, *extra)  # 'at a safe distance from the stove'
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
             return extra
+        lining = noun.phrase.head == "inside" and relation in ("around", "along", "against")
+        if lining and noun.phrase.of is not None:  # 'tuck towels around the inside of the crate'
+            return (Predicate("inside", (noun.phrase.of,), span, positive=relator.positive), *extra)
+        vague = noun.phrase.head in ("area", "section", "portion") and noun.phrase.determiner in ("a", "an", "any")
+        if vague and not directions_of(noun.phrase) and noun.phrase.of is None and relation in ("inside", "at", "on"):
+            misunderstood(span, "this does not say which place is meant")
+            near = tuple(p for p in (*noun.phrase.predicates, *extra) if p.positive and p.arguments)
+            return (Predicate("there", (), span, positive=relator.positive), *near)
         found = _positioned(relator, noun.phrase, span)
         if found is not None:
             main, rest = _with_argument(found, (*noun.phrase.predicates, *extra))
@@ -432,9 +475,6 @@ class Builder(Transformer[Any, Built]):
                 "level_with", tuple(a for p in noun.phrase.predicates if p.relation == "as" for a in p.arguments), span
             )
             return (*((level,) if level.arguments else ()), *directed, *extra)
-        if last_word(noun.phrase.head) in ("level", "height") and relation in ("at", "on"):
-            misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            return extra
         last = noun.phrase.predicates[-1] if noun.phrase.predicates else None
         if (
             last is not None
@@ -464,9 +504,12 @@ class Builder(Transformer[Any, Built]):
         if relation == "material":
             word = Adjective(noun.phrase.head or "unknown", "material", Degree.PLAIN, noun.phrase.span)
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
-        if noun.phrase.head.rpartition(" ")[2] in ARRANGEMENTS | CIRCUMSTANCES and relation == "inside":
+        last_part = last_word(noun.phrase.head).rpartition("-")[2]  # 'in an L-shape'
+        shown = last_part in _PICTURES and noun.phrase.determiner in ("this", "that", "the")
+        if (last_part in ARRANGEMENTS | CIRCUMSTANCES or shown) and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            return (Predicate("there", (), span, positive=relator.positive), *extra)
+            of_subject = noun.phrase.predicates if noun.phrase.determiner in ("a", "an", None) else ()
+            return (Predicate("there", (), span, positive=relator.positive), *of_subject, *extra)
         if relation == "by" and noun.phrase.owner is None and last_word(noun.phrase.head) in DEGREES:
             misunderstood(span, f"'{noun.phrase.head}' says how much, not where")
             return (*noun.phrase.predicates, *extra)  # 'turned by ninety degrees'
@@ -585,7 +628,7 @@ class Builder(Transformer[Any, Built]):
 
     def relative(self, rel: Chunk, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that stands on the tray*."""
-        return tuple(flat(verb))
+        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in flat(verb))
 
     def reduced(self, rel: Chunk, said: tuple[Said, ...]) -> tuple[Predicate, ...]:
         """Return the predicates of *that next to the tray*."""
@@ -607,6 +650,20 @@ class Builder(Transformer[Any, Built]):
     def whose(self, whose: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *whose handle points to the right*."""
         return tuple(replace(p, subject_part=noun.phrase) for p in flat(verb))
+
+
+def _with_contents(thing: NounPhrase, said: tuple[Said, ...] | None) -> tuple[Said, ...] | None:
+    """Return the place after *place the bowl with rice to the right* as that of the bowl, and not of the rice."""
+    first = said[0].predicates[:1] if said else ()
+    held = first[0].arguments[0] if first and first[0].relation == "with" and len(first[0].arguments) == 1 else None
+    alone = said is not None and len(said) == 1 and len(said[0].predicates) == 1
+    bare = held is not None and held.determiner is None and held.count is None and held.owner is None
+    if said is None or held is None or not (alone and bare) or not held.predicates or not held.head:
+        return said
+    if last_word(thing.head) in SURFACES - {"tray"} or thing.members:
+        return said  # 'lay the table with forks on the left'
+    holds = replace(first[0], arguments=(replace(held, predicates=()),))
+    return (Said((holds, *held.predicates)),)
 
 
 def _is_absolute(predicate: Predicate) -> bool:
@@ -851,6 +908,11 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
     return found
 
 
+_NO_TARGETS = frozenset({"direction", "position", "area", "inside", "outside", "o'clock"})
+
+_OR = "or"
+"""Mark, among the adverbs of a place, of an alternative to the place before it."""
+
 _SHARING_PLACES = frozenset({"along with", "together with"})
 """Prepositions of a thing that is where the subject is: *the gloves are on the shelf, along with the goggles*."""
 
@@ -874,6 +936,12 @@ _AMOUNTS = word_set(
 """Nouns of an amount, before the substance or the things that are meant."""
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 
+
+_PICTURES = frozenset({"picture", "photo", "photograph", "image", "diagram", "video", "illustration", "drawing"})
+_POINTED_AT = frozenset({"spot", "point", "place", "location", "stage"})
+"""Nouns after *at that*, which go back to a place named before."""
+_MEASURES = frozenset({"level", "height", "distance", "angle", "interval", "depth", "speed", "temperature", "pace"})
+"""Nouns after *at* that measure: *at a comfortable working distance*."""
 
 _OCCASIONS = word_set(
     "meal dinner lunch breakfast supper luncheon brunch concert performance ceremony wedding rehearsal time interval"

@@ -204,6 +204,8 @@ def _subject_follows(
         seen_noun = seen_noun or kind == "NP"
         mods += kind in PREDICATES
         i += 1
+    if kinds & {"AND", "OR"} and _lists_objects(types, start, at):
+        return False
     after = end + 1
     while types[after : after + 2] == ["OF", "NP"]:
         after += 2
@@ -252,6 +254,13 @@ def _subject_follows(
     if "COMMA" in kinds and complete and "AND" in kinds and following in (PREDICATES - {"WITH"}):
         return not _in_list(chunks, types, start, at, i)
     return kinds == {"AND"} and complete and _verb_left_out(chunks, types, start, at, end)
+
+
+def _lists_objects(types: list[str], start: int, at: int) -> bool:
+    """Return True for two or more objects of a command without a place: *put milk, eggs*, before *and butter on it*."""
+    verb = next((i for i in range(start, at) if types[i] in ("PUT", "TVERB")), at)
+    objects = types[verb + 1 : at]
+    return objects.count("COMMA") > 0 and objects[:1] == ["NP"] and set(objects) <= {"NP", "OF", "COMMA", "AND", "OR"}
 
 
 def _is_opposite(chunks: list[Chunk], start: int, at: int, place: int) -> bool:

@@ -61,8 +61,13 @@ def is_place(phrase: NounPhrase) -> bool:
     return (
         phrase.head in PLACE_NOUNS
         or phrase.head == "o'clock"
-        or (phrase.head in _ROWS and phrase.determiner in (None, "a", "an", "one"))
+        or (_row(phrase) is not None and phrase.determiner in (None, "a", "an", "one"))
     )
+
+
+def _row(phrase: NounPhrase) -> str | None:
+    """Return the relation of *a row*, and of *concentric circles*, where another word stands before a plural."""
+    return _ROWS.get(phrase.head) or (_ROWS.get(last_word(phrase.head)) if phrase.plural else None)
 
 
 def directions_of(phrase: NounPhrase) -> tuple[str, ...]:
@@ -107,15 +112,16 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     if not is_place(phrase) or relation not in _ON:
         return None
     head = phrase.head
-    if head in _ROWS and relation == "on" and phrase.of is None:
+    row = None if head in PLACE_NOUNS else _row(phrase)
+    if row is not None and relation == "on" and phrase.of is None:
         return None  # 'kettle on back ring'
     if head == "o'clock":
         return _made(relator, HOURS.get(phrase.count or 0, "top"), _owner(phrase), span, value=_clock(phrase))
-    if _ROWS.get(head) == "stacked" and relation == "on" and phrase.of is not None:
+    if row == "stacked" and relation == "on" and phrase.of is not None:
         return _made(relator, "on", (phrase.of,), span)  # 'on a pile of letters'
-    if head in _ROWS:
+    if row is not None:
         of = () if phrase.of is None else (phrase.of,)
-        return _made(relator, _ROWS[head], of, span)
+        return _made(relator, row, of, span)
     if phrase.count is not None and phrase.of is not None and phrase.of.head.startswith("clock"):
         return _made(relator, HOURS.get(phrase.count, "top"), (), span, value=_clock(phrase))
     kind = PLACE_NOUNS[head]

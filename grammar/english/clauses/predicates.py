@@ -12,6 +12,7 @@ from deixis.grammar.english.tree import (
     NounPhrase,
     Predicate,
     Span,
+    aimed,
 )
 from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
@@ -31,7 +32,7 @@ WRAPPING = {"cover": "on", "top": "on", "line": "on", "fill": "inside", "pack": 
 """Relation of what a command uses to the thing that it changes: *cover the bowl with a cloth*."""
 _ATTACHING = word_set(
     "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect"
-    " join fasten tie hook link stick pin clip clamp wire"
+    " join fasten tie hook link stick pin clip clamp wire press"
 )
 """Verbs after which *to* means that two things touch."""
 AWAY_FROM = {"off": "on", "off of": "on", "out of": "inside"}
@@ -146,7 +147,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 ]
                 i += 1
                 continue
-            if following is not None and lemma in _RANGING and following.relation not in ("row", "with", "inside"):
+            ranged = following is not None and lemma in _RANGING and not following.reversed
+            if ranged and following is not None and following.relation not in ("row", "with", "inside"):
                 found.append(Predicate("row", (), predicate.span, positive=predicate.positive))
             if following is not None and lemma in _SHAPING and _is_shape(lemma, following):
                 misunderstood(following.span, "this says what shape something gets, not where it is")
@@ -332,13 +334,15 @@ def destination(predicate: Predicate) -> Predicate:
     return replace(predicate, relation=relation)
 
 
-def by_means(lemma: str, predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+def by_means(lemma: str, thing: NounPhrase, predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
     """Return the predicates of a command with *with* read as what it uses: a cover, or a tool, which is left out.
 
     Parameters
     ----------
     lemma
         Verb in its base form.
+    thing
+        Object of the verb.
     predicates
         What stands after the verb.
 
@@ -351,7 +355,9 @@ def by_means(lemma: str, predicates: tuple[Predicate, ...]) -> tuple[Predicate, 
     for predicate in predicates:
         bare = predicate.relation == "with" and not any(a.predicates for a in predicate.arguments)
         if bare and predicate.subject_part is None and lemma in WRAPPING:
-            found.append(replace(predicate, relation=WRAPPING[lemma], reversed=True))
+            inner = lemma == "line" and last_word(thing.head) in VESSELS | HOLDERS  # 'line the box with paper'
+            relation = "inside" if inner else WRAPPING[lemma]
+            found.append(replace(predicate, relation=relation, reversed=True))
         elif not bare:
             found.append(predicate)
     return tuple(found)
@@ -432,8 +438,10 @@ def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
     if member.head in GAPS:
         return []
     for predicate in member.predicates:
-        aimed = predicate.relation in ("facing", "pointing") and last_word(member.head) in AIMED_PARTS
-        if aimed and any(argument.pronoun == "it" for argument in predicate.arguments):
+        if member.determiner == "the" and not member.plural:
+            predicate = aimed(predicate)  # 'with the cable hole towards the back'
+        faces = predicate.relation in ("facing", "pointing") and last_word(member.head) in AIMED_PARTS
+        if faces and any(argument.pronoun == "it" for argument in predicate.arguments):
             found.append((predicate, False))  # 'right of the plate with the blade facing it'
         elif any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
             one = any(argument.pronoun == "it" and not argument.head for argument in predicate.arguments)
@@ -546,6 +554,8 @@ def _state(lemma: str, marker: Predicate) -> Predicate:
 
 def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Predicate:
     span = union(marker.span, following.span)
+    if kind in ("face", "point") or lemma in ("look", "aim", "lean") or lemma in _ROTATING:
+        following = aimed(following)
     relation, value, arguments = following.relation, following.value, following.arguments
     if relation == "to" and arguments and lemma in MOVING:
         relation = destination(following).relation

@@ -64,6 +64,9 @@ REVOKED = re.compile(
     re.IGNORECASE,
 )
 """End of a sentence that takes back what it said: *…, but we don't*."""
+_PUTTING = (
+    "placing|putting|laying|positioning|arranging|keeping|storing|installing|mounting|attaching|adding|moving|stacking"
+)
 UNREAL = re.compile(
     r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
     r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather|sooner)\b"
@@ -112,6 +115,7 @@ UNREAL = re.compile(
     r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
     r"|\bin\s+(?:the|this|that|a)\s+(?:picture|photo(?:graph)?|painting|film|story|novel|dream)\s*[.!]?$"
     r"|\b(?:is|are)\s+due\s+(?:on|in|at|under|behind|next|back)\b"
+    rf"|^\s*(?:{_PUTTING})\s+(?!on|in|at|under|next|behind)[^,;:.]*?\b(?:is|are|was|can|may|will|would|helps?|makes?|keeps?|gives?|creates?|saves?|allows?|means?)\b"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )

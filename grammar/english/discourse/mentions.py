@@ -14,7 +14,15 @@ from deixis.grammar.english.discourse.references import POLES, REGIONS, Focus, R
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.adjectives import is_material_noun
-from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    PARTS,
+    PLACES_OF,
+    SUBSTANCES,
+    SURFACES,
+    VESSELS,
+    VIEWER_WORDS,
+    last_word,
+)
 from deixis.ontology.graph.claims import PLACES
 
 VERB_AFTER = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
@@ -72,8 +80,9 @@ class Mentions(Drafting, ABC):
 
     def _subject(self, subject: NounPhrase, predicates: tuple[Predicate, ...]) -> Entity | None:
         """Return the subject of a clause; one new object for each member of a group that an argument quantifies."""
-        if subject.head in _SIDES:
-            return None
+        best = any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives)
+        if subject.head in _SIDES or (subject.head in PLACES_OF and best):
+            return None  # 'the best place for a lamp is behind the sofa'
         if (
             subject.determiner in ("a", "an", None)
             and subject.head
@@ -86,7 +95,8 @@ class Mentions(Drafting, ABC):
                 if predicate.relation in ("end", "side") and self._at_each(predicate):
                     return self._introduce(replace(subject, count=2, determiner=None, plural=True))
                 for argument in predicate.arguments:
-                    if argument.determiner in ("each", "every"):
+                    of_each = argument.pronoun == "each" and not argument.head and argument.of is not None
+                    if argument.determiner in ("each", "every") or of_each:
                         group = self.references.find(argument)
                         if group is not None and group.size > 1:
                             self.how = replace(self.how, quantifier="each")
@@ -290,7 +300,7 @@ class Mentions(Drafting, ABC):
             and phrase.determiner in ("a", "an") and phrase.head and not phrase.plural
         ):  # fmt: skip
             return self._introduce(replace(phrase, determiner=None, count=subject.size, plural=True))
-        if phrase.determiner in ("each", "every"):
+        if phrase.determiner in ("each", "every") or (phrase.pronoun == "each" and phrase.of is not None):
             self.how = replace(self.how, quantifier="each")
         found = self._introduce(phrase, relation, subject)
         if found is not None and relation in _COMPARISONS and phrase.determiner in ("a", "an"):
@@ -309,5 +319,5 @@ _BESIDE = DIRECTIONS | {"near", "next_to", "between", "under", "opposite"}
 _LIMBS = frozenset({"elbow", "hand", "arm", "foot", "knee", "shoulder", "side"})
 
 
-_SIDES = frozenset({"left", "right"})
-"""Nouns that name a side and no thing, of which nothing is said."""
+_SIDES = frozenset({"left", "right", "furthest", "farthest", "closest", "nearest"})
+"""Nouns that name a side or a degree and no thing, of which nothing is said."""

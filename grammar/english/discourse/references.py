@@ -28,7 +28,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.relation_words import prepositions
-from deixis.ontology.inflection import singulars
+from deixis.ontology.inflection import plural, singulars
 
 MAX_COUNTED = 1000
 """Largest number of a noun phrase that is read as so many things."""
@@ -70,6 +70,12 @@ _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
+_FURTHER = re.compile(r"^.{0,12}\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
+"""Words before other things of a kind than those before."""
+_SIDES = frozenset(
+    ["side", "front", "back", "rear", "top", "bottom", "left", "right", "end", "middle", "upper", "lower"]
+)
+"""Words that tell a thing from another one of its kind by its place: *the side rails*."""
 CORNERS = frozenset({"top_left", "top_right", "bottom_left", "bottom_right"})
 """Relations that name a corner of a thing or of the surface, where no other thing is named."""
 POLES = {
@@ -229,9 +235,8 @@ class References:
         earlier = self._carrier(phrase, relation, besides) or self._earlier(phrase)
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
-            itself = (
-                None if phrase.adjectives and besides.noun != noun else earlier
-            )  # 'the oat milk behind the whole milk'
+            other = bool(phrase.adjectives) and besides.noun != noun  # 'the oat milk behind the whole milk'
+            itself = None if other or phrase.predicates else earlier  # 'two rods across the rods that have hooks'
             earlier = next((e for e in others if not _conflicting(e, phrase)), itself)
         of_it = phrase.owner is not None and phrase.owner.pronoun in ("it", "they")
         if of_it and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
@@ -239,6 +244,7 @@ class References:
         if earlier is not None:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
+        several = several and not any(a.dimension == "colour" for a in phrase.adjectives)
         if several and last in GENERAL and noun == last:
             return None  # 'the following items'
         if phrase.owner is not None:
@@ -273,10 +279,12 @@ class References:
             entity.split(count)
         elif phrase.plural:
             entity.plural, entity.single = True, lump is not None
-            plural = next((w for w in words if stem in singulars(w)), None)
-            plural = plural or next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
-            if plural is not None:
-                entity.written = f"{phrase.head[: -len(stem)]}{plural}".strip()
+            in_text = next((w for w in words if stem in singulars(w)), None)
+            in_text = in_text or next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
+            if in_text is not None:
+                entity.written = f"{phrase.head[: -len(stem)]}{in_text}".strip()
+            elif phrase.determiner == "the" and any(a.dimension == "position" for a in phrase.adjectives):
+                entity.written = plural(phrase.head)  # 'the front' of 'the front and back rails'
         self.entities.append(entity)
         return self._seen(entity, phrase)
 
@@ -343,13 +351,19 @@ class References:
         ):
             return None
         latest_first = self._named_like(phrase.head)
+        if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[1]]):
+            return None
+        if any(a.word == "remaining" for a in phrase.adjectives):
+            return self._remaining(phrase, latest_first)
+        comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
+        general = phrase.plural and phrase.determiner is None and phrase.owner is None and comparative
         if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
             return several
         for entity in sorted(
             latest_first,
             key=lambda entity: (
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
-                and entity.born < self.sentence and entity.noun == phrase.head,
+                and entity.born < self.sentence and entity.noun == phrase.head and not _agreement(entity, phrase),
                 entity.compared,
                 entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
@@ -364,6 +378,13 @@ class References:
                 continue  # 'the two rails' after 'a rail'
             if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
+            coloured = {("colour", a.word) for a in phrase.adjectives if a.dimension == "colour"}
+            if coloured and entity.members and phrase.plural and not any(
+                coloured & leaf.adjectives for leaf in entity.leaves()
+            ):  # fmt: skip
+                continue  # 'the white pieces' after '12 pieces'
+            if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
+                continue  # 'larger items' after 'sale items'
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (
@@ -390,13 +411,25 @@ class References:
         single = host.role is Role.THING and not (host.members or host.plural)
         return host if bare and single and host.noun != phrase.head and _can_name(phrase.head, host) else None
 
+    def _remaining(self, phrase: NounPhrase, latest_first: list[Entity]) -> Entity | None:
+        """Return the members of a group that *the remaining cups* leaves over; None if no group was told apart."""
+        for entity in latest_first:
+            left = [leaf for leaf in entity.leaves() if not leaf.is_picked] if entity.members else []
+            if left and len(left) < entity.size and _can_name(phrase.head, entity):
+                return left[0] if len(left) == 1 or not phrase.plural else Entity("", members=left)
+        return None
+
     def _is_further(self, phrase: NounPhrase, entity: Entity) -> bool:
         """Return True for *the second panel* after *one panel*: another one, which is not counted from a side."""
         rank = next((a.rank for a in phrase.adjectives if a.rank is not None), None)
         counted = any(p.relation == "ordinal" for p in phrase.predicates)
         alone = not (entity.members or entity.plural or entity.group is not None)
         ranked = any(dimension == "rank" for dimension, _ in entity.adjectives)
-        return alone and not ranked and rank is not None and rank > 1 and not counted and not phrase.plural
+        longer = entity.noun != phrase.head and not entity.was_called(
+            phrase.head
+        )  # 'the last hole' after 'an exit hole'
+        further = rank is not None and (rank > 1 or (rank < 0 and longer))
+        return alone and not ranked and further and not counted and not phrase.plural
 
     def _named_like(self, head: str) -> list[Entity]:
         """Return the known objects whose noun, or another noun for them, has the same last word, the latest first."""
@@ -901,12 +934,23 @@ def _can_name(head: str, entity: Entity) -> bool:
 
 
 def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
-    """Return True for *the back door* after *the pantry door*: the longer name has no side."""
-    sides = {a.word for a in phrase.adjectives if a.dimension == "position" and a.degree is Degree.PLAIN}
-    if entity.members or entity.plural or entity.group is not None:
-        return False
+    """Return True for *the back door* after *the pantry door*: the longer name has no side.
+
+    The same holds of *the black piece* after *the side pieces*, and of *the front rail* after *the side rails*.
+    """
+    told = {
+        (a.dimension, a.word) for a in phrase.adjectives
+        if a.dimension in ("position", "colour") and a.degree is Degree.PLAIN
+    }  # fmt: skip
     longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
-    return longer and bool(sides) and not any(("position", word) in entity.adjectives for word in sides)
+    if not longer or not told or told & entity.adjectives or entity.noun.startswith(tuple(w for _, w in told)):
+        return False
+    sides = _SIDES.intersection(entity.noun.split()[:-1])
+    lateral = all(word in ("left", "right") for _, word in told) and sides == {"side"}
+    if any(d == "position" for d, _ in told) and sides and not lateral:
+        return True  # but 'the left panel' is one of the side panels
+    several = entity.members or entity.plural or entity.group is not None
+    return not several or (any(d == "colour" for d, _ in told) and not phrase.plural)
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:

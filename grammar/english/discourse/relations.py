@@ -90,6 +90,9 @@ class Relations(Mentions):
             relation = f"exactly_{relation}"
         if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
+        single = subject.size == 1 and not subject.plural
+        if relation == "each_side" and single and self.how.optional:
+            relation = "next_to"  # 'the pump can stand on either side of the sink'
         forms = all(last_word(a.head) in _FORMS and a.determiner not in ("the", "each") for a in predicate.arguments)
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
@@ -181,8 +184,7 @@ class Relations(Mentions):
             return
         if relation == "among" and self.text[slice(*predicate.span)].casefold().startswith(("of ", "out of ")):
             return  # 'of the two cups one is on the tray'
-        single = subject.size == 1 and not subject.plural and not entities
-        if single and relation in _OF_SEVERAL:
+        if single and not entities and relation in _OF_SEVERAL:
             return
         if relation in COLLECTIVE and not (relation == "stacked" and entities):
             if subject.itself.members:
@@ -424,8 +426,10 @@ class Relations(Mentions):
             self._pair(subject, predicate.relation, contrasted, False)
             return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
+        high = self.text[slice(*predicate.span)].casefold().startswith(("up ", "high up", "at top"))
         if (
             predicate.part is None
+            and not high  # 'the bowls are up top'
             and last is not None
             and last.role is Role.THING
             and self.how.positive
@@ -433,6 +437,12 @@ class Relations(Mentions):
             and not GROUNDS.search(self.text[slice(*predicate.span)])
         ):
             before = next(f for f in self.references.recent if f.subject is not subject)
+            stated = self.drafts[-1] if self.drafts else None
+            level = stated.value if stated is not None and stated.relation == "part" and not stated.arguments else None
+            part = {("top", "below"): "bottom", ("bottom", "above"): "top"}.get((level or "", predicate.relation))
+            if part is not None and stated is not None and stated.how.sentence == self.how.sentence:
+                self._add("part", (subject,), (), value=part)  # 'jars up top, and pans below'
+                return
             opposite = OPPOSITES.get(before.relation or "") == predicate.relation
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:
                 last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'

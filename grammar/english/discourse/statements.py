@@ -10,12 +10,14 @@ from deixis.grammar.english.discourse.mentions import SUPERLATIVES
 from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, SUPPORTS, Relations
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
-from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.tree import Degree, NounPhrase, Predicate, aimed
 from deixis.grammar.english.vocabulary.nouns import (
+    FRONTS,
     GAPS,
     GENERAL,
     HOLDERS,
     PARTS,
+    PLACES_OF,
     SUBSTANCES,
     SURFACES,
     VESSELS,
@@ -23,6 +25,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     VIEWER_WORDS,
     last_word,
 )
+from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -58,6 +61,8 @@ class Statements(Relations):
     def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         if predicate.span in self.sentences[self.how.sentence].contested:
             self.how = self._guessed(Guess.CONTESTED)
+        if subject.role is Role.PART or predicate.subject_part is not None or subject.noun in PARTS | FRONTS:
+            predicate = aimed(predicate)
         relation = predicate.relation
         part_said = predicate.subject_part.head if predicate.subject_part is not None else ""
         self.part = last_word(subject.noun if subject.role is Role.PART else part_said)
@@ -197,7 +202,7 @@ class Statements(Relations):
                 and phrase.determiner in ("a", "an")
             ):
                 self._add("kind", (subject,), (), value=plain_noun(phrase.head))
-            if phrase.predicates:
+            if phrase.predicates and not (phrase.head in PLACE_NOUNS or phrase.head in PLACES_OF):
                 self._say(subject, phrase.predicates, phrase, focus=False)
 
     def _say_ordinal(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:

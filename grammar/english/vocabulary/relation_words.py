@@ -10,6 +10,7 @@ from deixis.grammar.english.vocabulary.tables import inverted, table, word_set
 
 ARRANGEMENTS = word_set(
     "triangle semicircle pattern fan pyramid arc spiral diamond grid formation heap arrangement layout order"
+    " shape mound batch clump zigzag checkerboard sequence orientation"
 )
 """Nouns after *in* that say how several things lie."""
 CIRCUMSTANCES = word_set(
@@ -17,6 +18,15 @@ CIRCUMSTANCES = word_set(
     " setting settings game games emergency emergencies"
 )
 """Nouns that name no place after *in*, *at*, *as*, *on* and *under*: *in a formal setting*."""
+HOLIDAYS = word_set(
+    "christmas easter epiphany thanksgiving halloween hanukkah passover pentecost advent ramadan diwali lent"
+)
+OCCURRENCES = word_set(
+    "round turn game match day night week month year season shift session class lesson meeting service process step"
+    " phase stage hour play meal show evening morning afternoon summer winter spring autumn term"
+    " rounds turns games days shifts sessions"
+)
+"""Nouns of what begins and ends in time: *at the start of each round*."""
 DEGREES = word_set(
     "degree percent notch turn half third quarter fraction amount factor multiple shade hair margin width length"
     " height depth thickness millimetre millimeter centimetre centimeter metre meter inch foot mm cm m"
@@ -33,7 +43,7 @@ NOT_PLACES = word_set(
     " shape danger need debt love peace pain tears luck vain theory principle practice belief reach scope"
     " sight suspicion investigation way secret private writing effect force action motion progress later ease"
     " error pretext heaven hour minute month week year season harmony arrival departure entry delivery completion"
-    " reflection inspection"
+    " reflection inspection impulse place"
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
 
@@ -65,6 +75,7 @@ behind: from behind, out from behind, on the far side of, the far side of
 -: as shown in, as seen in, as described in, as explained in, in the shape of, in the form of, in terms of
 -: in full view of, in plain view of, in view of, within sight of, in the event of, for the use of, for use by
 -: at the disposal of, in the presence of, in the absence of, to the delight of, at the request of, in charge of
+-: by means of, by way of, by virtue of
 -: clockwise from, counterclockwise from, anticlockwise from, clockwise of
 far: far from, far away from, away from, well away from, as far as possible from, as far away as possible from
 near: as close as possible to, as near as possible to

@@ -546,3 +546,94 @@ def test_lengths_are_read_as_they_are_spoken(text: str, metres: float) -> None:
     assert reading is not None
     claims = [fact.content for fact in reading.stated if isinstance(fact.content, Claim)]
     assert [claim.metres for claim in claims if claim.metres is not None] == [metres]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The bowl is toward the back of the tray. The jug is near the bowl.",
+         ["part(bowl, 'far')", "near(jug, bowl)"]),
+        ("Pack heavier books at the bottom of the crate and lighter ones toward the top of the crate.",
+         ["part(books, crate, 'bottom')", "part(book, crate, 'top')"]),
+        ("The cup stands next to the jug with its handle toward the left.",
+         ["next_to(cup, jug)", "facing(cup, 'left')"]),
+        ("The lamp is angled toward the front of the stage.", ["facing(lamp, 'front')"]),
+        ("Lay the mats next to the board face down.", ["next_to(mats, board)", "upside_down(mats)"]),
+        ("The bowl is next to the plate that is upside down.", ["upside_down(plate)", "next_to(bowl, plate)"]),
+        ("Place the small bowl with sugar next to the jug.", ["next_to(bowl, jug)"]),
+        ("Place the jug in the crate as shown below.", ["inside(jug, crate)"]),
+        ("Put the doll in the crate on Christmas morning.", ["inside(doll, crate)"]),
+        ("Each guest gets ten coins at the start of each round. The jug is on the mat.", ["on(jug, mat)"]),
+        ("Place the lamp at a comfortable working distance, next to the jug.", ["next_to(lamp, jug)"]),
+        ("Place the lamp at a safe distance from the kettle.", ["far(lamp, kettle)"]),
+        ("Lay the rods in an L-shape on the board.", ["on(rods, board)"]),
+        ("Set the goats and the hens in wide circles around the barn.",
+         ["circle(goats, hens)", "around(goats, barn)", "around(hens, barn)"]),
+        ("Put the king on the second square.", ["on(king, square)"]),
+        ("Place the jug in an area near the pot.", ["near(jug, pot)"]),
+        ("Line the crate with crumpled paper.", ["inside(paper, crate)"]),
+        ("Avoid placing the lamp next to the curtain.", ["not next_to(lamp, curtain)"]),
+        ("Try to place the mouse next to the keyboard.", ["next_to(mouse, keyboard)"]),
+        ("Also, pack heavier books at the bottom of the crate.", ["part(books, crate, 'bottom')"]),
+        ("Keep ham, eggs, and milk in the crate.",
+         ["inside(ham, crate)", "inside(eggs, crate)", "inside(milk, crate)"]),
+        ("Keep snacks such as nuts, figs, and dates in the crate.", ["inside(snacks, crate)"]),
+        ("Put your jars and pots up top, and your raw ham below.",
+         ["part(jars, 'top')", "part(pots, 'top')", "part(raw_ham, 'bottom')"]),
+        ("Press the slats against the frame and secure in place.", ["against(slats, frame)"]),
+        ("Plug in the cable next to the lamp.", ["next_to(cable, lamp)"]),
+        ("It is a good idea to place paper between the two plates.", ["between(paper, plate_1, plate_2)"]),
+        ("The pan is on the mat. On top of this place the jug.", ["on(pan, mat)", "on(jug, pan)"]),
+        ("On the side wall, half way up, are two hooks.", ["on(hook_1, side_wall)", "on(hook_2, side_wall)"]),
+        ("Slide the panel into place, behind the jug.", ["behind(panel, jug)"]),
+        ("Screw the slats to the beams, using two bolts on each side.", ["touching(slats, beams)"]),
+        ("Place at least two cups next to the jug.", ["next_to(cup_1, jug)", "next_to(cup_2, jug)"]),
+        ("The best place for the jug is next to the pot. The cup is on the mat.", ["on(cup, mat)"]),
+        ("In this picture of a kitchen, you will see a jug next to the pot.", ["next_to(jug, pot)"]),
+        ("Lay the beam across the two legs at that spot.", ["across(beam, leg_1)", "across(beam, leg_2)"]),
+        ("Placing jars next to tins is a common choice. The jug is on the mat.", ["on(jug, mat)"]),
+        ("Keep the ham in the crate, since this is the coldest part of the larder.", ["inside(ham, crate)"]),
+    ],
+)  # fmt: skip
+def test_places_of_instructions(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Each guest gets ten coins. The remaining coins lie behind the jug.", ["behind(coins, jug)"]),
+        ("There are four cups. The first cup is on the box. The remaining cups are behind the jug.",
+         ["on(cup_1, box)", "behind(cup_2, jug)", "behind(cup_3, jug)", "behind(cup_4, jug)"]),
+        ("Place the side rails next to the bench. Put the front rail on the box.",
+         ["next_to(side_rails, bench)", "on(rail, box)"]),
+        ("Two side panels lie on the box. The left panel is near the jug.",
+         ["on(side_panel_1, box)", "on(side_panel_2, box)", "left(side_panel_1, side_panel_2)",
+          "near(side_panel_1, jug)"]),
+        ("Stack the side pieces. Put the black piece on the box.", ["on(piece, box)"]),
+        ("Sale books lie near the jug. Larger books go behind the pot.",
+         ["near(sale_books, jug)", "behind(books, pot)"]),
+        ("Put the front and back rails on the box. Attach the slats to the back rail.",
+         ["on(front_rails, box)", "on(back_rails, box)", "touching(slats, back_rails)"]),
+        ("The jug is on the left and right sides of the pot.", ["left(jug, pot)", "right(jug, pot)"]),
+        ("Stand a rod across the rod that has a hook.", ["across(rod_1, rod_2)"]),
+        ("On the board are two spots. Place one coin on each of the two spots.",
+         ["on(spot_1, board)", "on(spot_2, board)", "on(coin_1, spot_1)", "on(coin_2, spot_2)"]),
+        ("The pump can be placed on either side of the sink.", ["next_to(pump, sink)"]),
+        ("The pots are on the box. More pots stand behind the jug.", ["on(pots_1, box)", "behind(pots_2, jug)"]),
+        ("Put two pieces on the box. The white pieces are near the jug. The black pieces are near the pot.",
+         ["on(piece_1, box)", "on(piece_2, box)", "near(white_pieces, jug)", "near(black_pieces, pot)"]),
+        ("Place the cup on the mat, a spoon next to it, then the jug, and finally a pot on the last box.",
+         ["on(cup, mat)", "next_to(spoon, cup)", "on(pot, box)"]),
+    ],
+)  # fmt: skip
+def test_things_of_instructions(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+def test_places_that_or_joins_are_a_choice() -> None:
+    reading = read_english("Place the jar in either the middle or the back of the crate.").reading
+    assert reading is not None
+    assert [str(fact.content) for fact in reading.stated] == ["middle(jar, crate)", "part(jar, crate, 'back')"]
+    assert len({fact.alternative for fact in reading.stated}) == 1
+    assert reading.stated[0].alternative is not None
