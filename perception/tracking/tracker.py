@@ -620,7 +620,8 @@ class Tracker:
                     continue
                 if thing.found:
                     self._carry(thing)
-                if not self._outline.beyond(thing.pose[None, :2, 3])[0]:
+                moves = at - self._moved_at < UNSTEADY_FOR
+                if moves and not self._outline.beyond(thing.pose[None, :2, 3])[0]:
                     thing.out_of_view |= thing.is_leaving(view, seconds)
                 thing.lost()
                 continue

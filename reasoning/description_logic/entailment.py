@@ -53,6 +53,13 @@ class Entailment(Answer):
     no contradiction. ``inferred`` is empty for an inconsistent ontology. ``inconsistency`` explains the inconsistency,
     and ``impossible`` each of the first unsatisfiable classes, as far as :func:`explained` found justifications; if it
     did not find all, ``unexplained`` is the reason. ``labels`` are those of the ontology by term, for sentences.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.reason("ontology/deixis.ttl", "rl")
+    >>> found.possible, found.unsatisfiable, found.complete
+    (True, (), False)
     """
 
     engine: LogicEngine

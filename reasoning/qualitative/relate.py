@@ -146,7 +146,16 @@ def relate(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Related(Answer):
-    """The atoms of one calculus between every ordered pair of named things."""
+    """The atoms of one calculus between every ordered pair of named things.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> scene = deixis.Scene.from_boxes([[0.0, 0.0], [0.3, 0.0]], [[0.2, 0.2], [0.32, 0.2]])
+    >>> found = deixis.relate(scene, "cd")
+    >>> list(found.pairs(subject="o1")), found.signs[found.codes[0, 1]], found.places("o2")
+    ([('o1', 'W', 'o2')], 'W', range(1, 2))
+    """
 
     calculus: str
     ids: tuple[str, ...]

@@ -68,6 +68,28 @@ class Chronology(Answer):
     uint16, holds the Allen relations that the row's fluent may have to the column's. If ``exact``, both are as tight as
     possible. Otherwise some disjunctions were ignored: what is certain is still certain, but what is possible may not
     be. Times are in seconds since ``origin``, a description in words; ``file`` is the file that the fluents come from.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.chronology("examples/serving.fluents.json")
+    >>> str(found.start("served")), str(found.finish("served")), str(found.duration("carried"))
+    ('[30, 60]', '(34, ∞)', '[10, 15]')
+    >>> [relation.name for relation in found.relations("fetch", "pouring")]
+    ['BEFORE']
+    >>> found.certain_order("fetch", "pouring").value
+    'precedes'
+    >>> def names(fluents):
+    ...     return [fluent.id for fluent in fluents]
+    >>> names(found.held_at(28)), names(found.may_have_held(28))
+    ([], ['fetch', 'carried', 'cleared'])
+    >>> window = Window(20, 40)
+    >>> names(found.held_within(window)), names(found.may_have_held_within(window))
+    (['carried'], ['fetch', 'carried', 'served', 'pouring', 'cleared'])
+    >>> names(found.held_throughout(window)), names(found.may_have_held_throughout(window))
+    ([], ['cleared'])
+    >>> len(found.certain_orders(window))
+    7
     """
 
     fluents: tuple[Fluent, ...]

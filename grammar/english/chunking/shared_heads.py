@@ -88,7 +88,7 @@ def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
     """
     found = list(words)
     for at in range(len(found) - 4, -1, -1):
-        first, joint, second, last = (word.norm for word in found[at : at + 4])
+        first, joint, second, last = [*(word.norm for word in found[at : at + 4]), "", ""][:4]
         if (first, joint, second) == ("bread", "and", "butter") and last in _BREAD_AND_BUTTER:
             found[at] = replace(found[at], norm=_BREAD_AND_BUTTER[last], end=found[at + 2].end)
             del found[at + 1 : at + 3]

@@ -404,8 +404,8 @@ class Builder(Transformer[Any, Built]):
         aims = [p for p in noun.phrase.predicates if TOWARDS in p.adverbs and not p.arguments]
         if aims:  # 'behind the jug towards the right'
             misunderstood(aims[0].span, "this does not say of what this is a direction")
-            kept = tuple(p for p in noun.phrase.predicates if p not in aims)
-            noun = Noun(replace(noun.phrase, predicates=kept), noun.extra)
+            others = tuple(p for p in noun.phrase.predicates if p not in aims)
+            noun = Noun(replace(noun.phrase, predicates=others), noun.extra)
         last_said = noun.phrase.predicates[-1:]
         if last_said and last_said[0].relation == "upside_down" and "that" not in last_said[0].adverbs:
             bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])

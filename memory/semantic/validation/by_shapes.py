@@ -41,7 +41,14 @@ _ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
 
 @dataclass(frozen=True, repr=False)
 class ShapesReport(Answer):
-    """Result of a validation: conformance, every result (violations first), and the standard report as Turtle."""
+    """Result of a validation: conformance, every result (violations first), and the standard report as Turtle.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> deixis.validate("ontology/deixis.ttl")
+    <ShapesReport 0 results: conforms>
+    """
 
     conforms: bool
     results: tuple[ShapeResult, ...]

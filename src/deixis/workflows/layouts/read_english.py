@@ -71,6 +71,12 @@ def read(
         If the time limit is reached.
     TypeError
         Unless exactly one of ``path`` and ``text`` is given.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> [sentence.paraphrase for sentence in deixis.read(text="Left of the plate is the fork.").reading.sentences]
+    ['The fork is left of the plate.']
     """
     if (path is None) == (text is None):
         raise TypeError("`read` must be given either a path or `text`, not both or neither")

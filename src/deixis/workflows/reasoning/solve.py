@@ -50,11 +50,20 @@ class SolveRequest:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SolvedNetwork(Answer):
-    """One network of a file, and what was found about it.
+    r"""One network of a file, and what was found about it.
 
     ``seconds`` is the time that the verdict took. ``shown`` are the networks that were asked for, the closure or the
     scenario, one for each calculus. ``boxes`` satisfy everything that several calculi, or one with distances, say:
     least and greatest corner by thing, distances in units of the reference length.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> (solved,) = deixis.solve(text="1\n0 1 ( < )\n.\n", calculus="point", scenario=True).networks
+    >>> solved
+    <SolvedNetwork consistent, 2 things>
+    >>> solved.to_dict()["relations"][0]["relation"]
+    ['<']
     """
 
     text: NetworkText
@@ -86,6 +95,8 @@ class Solved(Answer):
     >>> found = deixis.solve(text="2\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n", calculus="point")
     >>> found
     <Solved 1 network: inconsistent>
+    >>> found.verdict.value
+    'inconsistent'
     >>> [str(constraint.source) for _, constraint in found.networks[0].conflict]
     ['<text>:2:1', '<text>:3:1', '<text>:4:1']
     """

@@ -48,6 +48,12 @@ def validate(
         If the shapes are malformed.
     LimitError
         If the time limit is reached.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> deixis.validate("ontology/deixis.ttl", shapes="ontology/shapes.ttl").conforms
+    True
     """
     require_time_limit(time_limit)
     deadline = Deadline.after(time_limit)
