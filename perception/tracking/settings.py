@@ -99,8 +99,8 @@ class TrackingSettings:
     gone_after
         Time without a hand in view after which a thing that is not found is gone.
     away_after
-        The same time for a thing that was carried out of the image of a moving camera above the table, where it may be set
-        down.
+        The same time for a thing that was carried out of the image of a moving camera, above the table where it may be
+        set down.
     lost_after
         Time after which a thing that left its place and is not found is gone, also if a hand is in view.
     workers
