@@ -401,7 +401,7 @@ class Relations(Mentions):
             return False
         last = next((d for d in reversed(self.drafts) if d.relation in CORNERS and subject not in d.subjects), None)
         near = last is not None and self.how.sentence - last.how.sentence <= 1
-        if last is not None and near and Guess.OF_THE_LAST not in last.how.guesses:
+        if last is not None and near and not last.how.guesses & {Guess.OF_THE_LAST, Guess.OF_EARLIER}:
             self._add(predicate.relation, (subject,), last.arguments, value=last.value)
             return True
         if not AT_CORNER.match(self.text[slice(*predicate.span)]):
@@ -447,9 +447,11 @@ class Relations(Mentions):
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:
                 last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'
             same = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (last,)]
-            if same and same[-1].arguments and Guess.OF_THE_LAST in same[-1].how.guesses:
+            if same and same[-1].arguments and same[-1].how.guesses & {Guess.OF_THE_LAST, Guess.OF_EARLIER}:
                 last = same[-1].arguments[0]  # 'the bread plate above to the left, the glass above to the right'
-            self.how = self._guessed(Guess.OF_THE_LAST)
+            further = self.text[: predicate.span[0]].rstrip().casefold().endswith(("further", "farther"))
+            here = before.sentence == self.how.sentence or further  # 'further to the right lie the tongs'
+            self.how = self._guessed(Guess.OF_THE_LAST if here else Guess.OF_EARLIER)
             self._pair(subject, predicate.relation, last, False)
             if predicate.measure is not None and last.role is Role.THING:
                 self._add("distance", (subject,), (last,), metres=predicate.measure.metres)
