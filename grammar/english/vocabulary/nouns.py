@@ -183,6 +183,7 @@ ABSTRACT = frozenset(
             "efficiency",
         ),
         *("silence", "weather", "tradition", "custom", "history", "law", "risk", "danger", "chance", "news"),
+        *("etiquette", "theory", "principle", "practice", "style", "variety", "restriction", "reference", "excerpt"),
     ]
 )
 """Nouns of what has no place in a scene: *the decision on the table*."""
