@@ -159,9 +159,7 @@ def floating_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline
             continue
         points = other.cloud.points.astype(np.float64) @ other.pose[:3, :3].T + other.pose[:3, 3]
         floats = np.quantile(points[:, 2], LOWEST_SHARE) > MIN_FLOATING
-        tints = other.cloud.colours
-        alike = tints is not None and thing.likeness(tints.astype(np.float64), np.inf).mean() > MIN_HANDLE_LIKENESS
-        if floats and alike and thing.distances(points).min() < CONTACT:
+        if floats and _is_alike(thing, other) and thing.distances(points).min() < CONTACT:
             found.append(other)
     return found
 
@@ -193,11 +191,16 @@ def supporting_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeli
         aside = float(np.linalg.norm(ends.mean(axis=0)[:2] - middle[:2])) + other.oriented.extents[0] / 2
         if not (other.first_rest and other.at == thing.at and aside < radius and ends[:, 2].max() < bottom + BEYOND):
             continue
-        tints = other.cloud.colours
-        if tints is None or thing.likeness(tints.astype(np.float64), np.inf).mean() < MIN_HANDLE_LIKENESS:
+        if not _is_alike(thing, other):
             return []
         found.append(other)
     return found
+
+
+def _is_alike(thing: Pipeline, other: Pipeline) -> bool:
+    """Return True if another thing has the colours of a thing, in any light."""
+    tints = other.cloud.colours
+    return tints is not None and bool(thing.likeness(tints.astype(np.float64), np.inf).mean() > MIN_HANDLE_LIKENESS)
 
 
 def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage, view: TableView) -> bool:
