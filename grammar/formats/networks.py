@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deixis.errors import DeixisError
-from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, shortened
+from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, ScriptFileError, shortened
 from deixis.grammar.files import read_text
 from deixis.ontology.graph.facts import Source
 from deixis.reasoning.errors import NetworkError, UnknownAtomError
@@ -80,7 +80,7 @@ def read_networks(path: str | Path, calculi: Sequence[Calculus]) -> tuple[Networ
         If the file cannot be read.
     """
     if Path(path).is_dir():
-        raise IsADirectoryError(21, "this is a folder, not a network file", str(path))
+        raise ScriptFileError(f"{path}: this is a folder, not a network file")
     return parse_networks(read_text(Path(path), str(path)), calculi, str(path))
 
 

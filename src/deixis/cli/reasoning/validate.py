@@ -28,6 +28,7 @@ def validate(
 ) -> None:
     """Check data against SHACL shapes; print the violations and exit 1 if there are any."""
     from deixis.errors import DeixisError
+    from deixis.memory.semantic.rdf.package import SHAPES_FILE
     from deixis.reasoning.errors import LimitError
     from deixis.report.reasoning.validate import shapes_lines
     from deixis.workflows.reasoning.validate import validate as validated
@@ -39,12 +40,12 @@ def validate(
     try:
         if files:
             with time_bar("checking the shapes", time_limit):
-                report = validated(files, shapes or (), time_limit)
+                report = validated(files, shapes or SHAPES_FILE, time_limit)
         else:
             from deixis.session import Session
 
             with Session(memory) as session, time_bar("checking the shapes", time_limit):
-                report = validated(session.memory(), shapes or (), time_limit)
+                report = validated(session.memory(), shapes or SHAPES_FILE, time_limit)
     except LimitError as error:
         print(f"deixis: {error}", file=sys.stderr)
         raise typer.Exit(UNDECIDED) from None

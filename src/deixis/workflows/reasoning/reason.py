@@ -17,7 +17,7 @@ from deixis.ontology.rdf.triples import with_blank_nodes
 from deixis.reasoning.description_logic.entailment import Entailment, LogicEngine, entail, explained
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples, write_ntriples
 from deixis.reasoning.description_logic.verbalisation import labels_of
-from deixis.reasoning.errors import require_time_limit
+from deixis.reasoning.errors import SettingError, require_time_limit
 
 _PREFIX = re.compile(r"^\s*@?prefix\s+([\w.-]*):\s*<([^<>\s]*)>", re.IGNORECASE | re.MULTILINE)
 
@@ -72,7 +72,7 @@ def reason(
     if isinstance(data, SemanticMemory):
         stated, _ = read_remembered(data)
     else:
-        stated, _ = read_ontology(paths(data))
+        stated, _ = read_ontology(paths(data, "data"))
     deadline = Deadline.after(time_limit)
     found = entailment(stated, engine, time_limit)
     if found.possible or not reasons:
@@ -80,20 +80,30 @@ def reason(
     return explained(write_ntriples(stated), found, deadline.for_reasons(time_limit), every)
 
 
-def paths(files: str | Path | Sequence[str | Path]) -> list[Path]:
+def paths(files: str | Path | Sequence[str | Path], argument: str) -> list[Path]:
     """Return one file, or several, as a list of paths.
 
     Parameters
     ----------
     files
         A path, or several.
+    argument
+        Name of the argument, for the error.
 
     Returns
     -------
     list of Path
         The paths, in order.
+
+    Raises
+    ------
+    SettingError
+        If there is no file.
     """
-    return [Path(file) for file in ([files] if isinstance(files, str | Path) else files)]
+    found = [Path(file) for file in ([files] if isinstance(files, str | Path) else files)]
+    if not found:
+        raise SettingError(f"`{argument}` must name at least one file")
+    return found
 
 
 def entailment(stated: Sequence[Triple], engine: LogicEngine | str, time_limit: float) -> Entailment:

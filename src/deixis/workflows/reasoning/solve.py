@@ -16,6 +16,7 @@ from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.formats.networks import NetworkText, parse_networks, read_networks
+from deixis.reasoning.errors import require_time_limit
 from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
 from deixis.reasoning.qualitative.networks.closure.algebraic import close
 from deixis.reasoning.qualitative.networks.closure.state import Progress
@@ -155,7 +156,7 @@ def solve(
     Raises
     ------
     DeixisError
-        If the calculus is unknown, or two calculi cannot be joined.
+        If the calculus is unknown, two calculi cannot be joined, or both ``closure`` and ``scenario`` are requested.
     NetworkFileError
         If the file has errors; the message names the line and column of each.
     LimitError
@@ -171,6 +172,9 @@ def solve(
     """
     if (network is None) == (text is None):
         raise TypeError("`solve` must be given either a path or `text`, not both or neither")
+    if closure and scenario:
+        raise DeixisError("`closure` and `scenario` exclude each other")
+    require_time_limit(time_limit)
     calculi, _ = calculi_named(calculus)
     texts = read_networks(network, calculi) if network is not None else parse_networks(text or "", calculi)
     request = SolveRequest(closure, scenario, explain, reasons, time_limit)

@@ -20,7 +20,7 @@ from deixis.workflows.reasoning.reason import paths
 
 def validate(
     data: SemanticMemory | str | Path | Sequence[str | Path],
-    shapes: str | Path | Sequence[str | Path] = (),
+    shapes: str | Path | Sequence[str | Path] = SHAPES_FILE,
     time_limit: float = 60.0,
 ) -> ShapesReport:
     """Validate the triples of files, taken together, or of a memory, by SHACL shapes.
@@ -61,8 +61,8 @@ def validate(
         names = (GraphName.ONTOLOGY, GraphName.EPISODES, *UNION)
         triples = list(dict.fromkeys(triple for name in names for triple in data.triples(name)))
     else:
-        triples = _triples(paths(data))
-    return validate_by_shapes(triples, _shapes(paths(shapes)), deadline)
+        triples = _triples(paths(data, "data"))
+    return validate_by_shapes(triples, _shapes(paths(shapes, "shapes")), deadline)
 
 
 def _triples(files: Sequence[Path]) -> list[ox.Triple]:
@@ -70,7 +70,7 @@ def _triples(files: Sequence[Path]) -> list[ox.Triple]:
 
 
 def _shapes(files: Sequence[Path]) -> list[ox.Triple]:
-    found = _triples(files or [SHAPES_FILE])
+    found = _triples(files)
     if not any(triple.predicate.value.startswith("http://www.w3.org/ns/shacl#") for triple in found):
         raise DeixisError(f"{', '.join(map(str, files))}: there is no SHACL shape in it")
     return found

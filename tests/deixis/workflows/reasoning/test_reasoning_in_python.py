@@ -118,3 +118,18 @@ def test_relate_answers_as_the_command() -> None:
 def test_a_file_or_a_text_must_be_given(function: object) -> None:
     with pytest.raises(TypeError, match="either a path or `text`, not both or neither"):
         function()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (lambda: deixis.solve("examples", calculus="ra"), "examples: this is a folder, not a network file"),
+        (lambda: deixis.solve(text=CONFLICT, calculus="point", closure=True, scenario=True), "exclude each other"),
+        (lambda: deixis.solve(text=CONFLICT, calculus="point", time_limit=-1), "`time_limit` must be at least 0"),
+        (lambda: deixis.reason([]), "`data` must name at least one file"),
+        (lambda: deixis.validate("ontology/deixis.ttl", shapes=[]), "`shapes` must name at least one file"),
+    ],
+)
+def test_bad_arguments_are_named(function: object, message: str) -> None:
+    with pytest.raises(DeixisError, match=message):
+        function()  # type: ignore[operator]
