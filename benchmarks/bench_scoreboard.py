@@ -108,7 +108,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
                 right = found.main.mean(one.name, group, "right")
                 if right.count:
                     ends = right.mean - right.half, right.mean + right.half
-                    figure(f"{group}, {one.name}: share named right", right.mean, "share", ends)
+                    figure(f"{group}: {one.name}", right.mean, "share", ends)
         if options.plot:
             plot_scoreboard(found, options.plot)
         if options.json:

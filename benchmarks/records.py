@@ -103,7 +103,7 @@ RUNS = (
     Run(
         "scoreboard",
         "Grounding",
-        "engines and peers on tables and photographs",
+        "engines and peers on tables and photographs: share named right",
         options="--cases 3 --time-limit 2",
         data=True,
     ),
