@@ -37,6 +37,9 @@ class Guess(StrEnum):
     BARE = "a word without an article can be another word than the name of a thing"
 
 
+UNANCHORED = frozenset({Guess.OF_THE_LAST, Guess.OF_EARLIER})
+"""Guesses of the thing that a direction is from."""
+
 SHARE_RIGHT = {
     Guess.RUN_ON: 0.72,
     Guess.CUT_SHORT: 0.78,

@@ -535,8 +535,12 @@ class Tracker:
         settings = self.settings
         return self._reference.compared(
             image, self._view.level, labels, settings.tolerance, self._deviation, settings.colour,
-            EDGE_REACH if at - self._moved_at < UNSTEADY_FOR else 0, self._colours,
+            EDGE_REACH if self._camera_moves(at) else 0, self._colours,
         )  # fmt: skip
+
+    def _camera_moves(self, at: float) -> bool:
+        """Return True if the camera has moved a short while ago."""
+        return at - self._moved_at < UNSTEADY_FOR
 
     def _look_at_resting(self, image: FrameImage, changes: Changes, at: float) -> None:
         """Decide by their pixels which resting things are still at their places."""
@@ -620,8 +624,7 @@ class Tracker:
                     continue
                 if thing.found:
                     self._carry(thing)
-                moves = at - self._moved_at < UNSTEADY_FOR
-                if moves and not self._outline.beyond(thing.pose[None, :2, 3])[0]:
+                if self._camera_moves(at) and not self._outline.beyond(thing.pose[None, :2, 3])[0]:
                     thing.out_of_view |= thing.is_leaving(view, seconds)
                 thing.lost()
                 continue
@@ -746,7 +749,7 @@ class Tracker:
         """Add the missing parts to one of the things that have rested for a while; return what was merged."""
         assert self._reference is not None and self._view is not None
         limits, reference, view = self.settings, self._reference, self._view
-        moves = at - self._moved_at < UNSTEADY_FOR
+        moves = self._camera_moves(at)
         ready = (
             thing
             for thing in self._things
@@ -914,7 +917,7 @@ class Tracker:
 
         assert self._view is not None
         mask = np.zeros(self._view.level.shape, np.bool_)
-        pixels, _ = self._view.pixels(thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3])
+        pixels, _ = self._view.pixels(thing.placed_points)
         mask.ravel()[pixels] = True
         around: NDArray[np.bool_] = binary_dilation(mask, np.ones((3, 3)), iterations=2)
         return around
@@ -927,7 +930,7 @@ class Tracker:
         from scipy.ndimage import binary_dilation, binary_opening
 
         assert self._reference is not None
-        if at - self._moved_at >= UNSTEADY_FOR:
+        if not self._camera_moves(at):
             return np.zeros(len(pixels), np.bool_)
         mask = np.zeros(self._reference.owner.shape, np.bool_)
         mask.ravel()[pixels] = True
@@ -1017,7 +1020,7 @@ class Tracker:
             came = thing.first_rest and not thing.active and thing.since > self._laid_out_at
             if not came or abs(thing.since - since) > TOGETHER or thing.likeness(tints, np.inf).mean() < ALIKE:
                 continue
-            away = cKDTree(thing.cloud.points @ thing.pose[:3, :3].T + thing.pose[:3, 3]).query(points)[0]
+            away = cKDTree(thing.placed_points).query(points)[0]
             if thing.contains(points, self.settings.margin).mean() > 0.9 or away.min() < TOUCHING:
                 self._reference.give(pixels, thing.slot, image)
                 thing.extend(points, tints.astype(np.float32), self.settings.detection.outlines)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from deixis.grammar.english.confidence import Guess
+from deixis.grammar.english.confidence import UNANCHORED, Guess
 from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.mentions import Mentions
 from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
@@ -401,7 +401,7 @@ class Relations(Mentions):
             return False
         last = next((d for d in reversed(self.drafts) if d.relation in CORNERS and subject not in d.subjects), None)
         near = last is not None and self.how.sentence - last.how.sentence <= 1
-        if last is not None and near and not last.how.guesses & {Guess.OF_THE_LAST, Guess.OF_EARLIER}:
+        if last is not None and near and not last.how.guesses & UNANCHORED:
             self._add(predicate.relation, (subject,), last.arguments, value=last.value)
             return True
         if not AT_CORNER.match(self.text[slice(*predicate.span)]):
@@ -447,7 +447,7 @@ class Relations(Mentions):
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:
                 last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'
             same = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (last,)]
-            if same and same[-1].arguments and same[-1].how.guesses & {Guess.OF_THE_LAST, Guess.OF_EARLIER}:
+            if same and same[-1].arguments and same[-1].how.guesses & UNANCHORED:
                 last = same[-1].arguments[0]  # 'the bread plate above to the left, the glass above to the right'
             further = self.text[: predicate.span[0]].rstrip().casefold().endswith(("further", "farther"))
             here = before.sentence == self.how.sentence or further  # 'further to the right lie the tongs'

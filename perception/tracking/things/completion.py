@@ -152,12 +152,12 @@ def floating_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline
     """
     if not thing.first_rest or thing.oriented.extents[2] < FLAT:
         return []
-    found, top = [], float(_corners(thing)[:, 2].max())
+    found, top = [], float(thing.placed_corners[:, 2].max())
     for other in others:
-        smaller = len(other.cloud) <= MAX_HANDLE * len(thing.cloud) and _corners(other)[:, 2].max() < top + BEYOND
+        smaller = len(other.cloud) <= MAX_HANDLE * len(thing.cloud) and other.placed_corners[:, 2].max() < top + BEYOND
         if not (other.first_rest and other.at == thing.at and smaller):
             continue
-        points = other.cloud.points.astype(np.float64) @ other.pose[:3, :3].T + other.pose[:3, 3]
+        points = other.placed_points
         floats = np.quantile(points[:, 2], LOWEST_SHARE) > MIN_FLOATING
         if floats and _is_alike(thing, other) and thing.distances(points).min() < CONTACT:
             found.append(other)
@@ -180,14 +180,14 @@ def supporting_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeli
         Things of its colour that came with it, below it and about its vertical axis; none if one of them has another
         colour.
     """
-    corners = _corners(thing)
+    corners = thing.placed_corners
     middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
     if not thing.first_rest or bottom < MIN_LIFTED:
         return []
     radius = thing.oriented.extents[0] / 2 + STRIP_MARGIN
     found = []
     for other in others:
-        ends = _corners(other)
+        ends = other.placed_corners
         aside = float(np.linalg.norm(ends.mean(axis=0)[:2] - middle[:2])) + other.oriented.extents[0] / 2
         if not (other.first_rest and other.at == thing.at and aside < radius and ends[:, 2].max() < bottom + BEYOND):
             continue
@@ -221,7 +221,7 @@ def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage
         False for a thing that reaches down to the table or lies on another one, and where the frame shows what is
         below it.
     """
-    corners = _corners(thing)
+    corners = thing.placed_corners
     middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
     if bottom < MIN_LIFTED:
         return False
@@ -326,7 +326,7 @@ class FlatThing:
             self._alike = self._candidate = table & self._carried_ends(table, depth, shade, like.reshape(tinted.shape))
         else:
             high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
-            low = self._height < _corners(thing)[:, 2].max() + BEYOND
+            low = self._height < thing.placed_corners[:, 2].max() + BEYOND
             self._candidate = table & (high | tinted) & (self._height > -4 * self._noise) & low
 
     @property
@@ -425,7 +425,7 @@ class FlatThing:
 
     def _includes(self, piece: Pipeline) -> bool:
         """Return True if most points of a piece lie within the box of the thing."""
-        points = piece.cloud.points.astype(np.float64) @ piece.pose[:3, :3].T + piece.pose[:3, 3]
+        points = piece.placed_points
         return bool(self._thing.contains(points, self._thing.settings.margin).mean() > MIN_INCLUDED)
 
     def _leads_to(self, piece: Mask, line: Mask) -> bool:
@@ -488,14 +488,14 @@ class FlatThing:
         if not self._is_slender:
             return np.zeros(self._level.shape, np.bool_)
         across = turned_axes(self._thing.oriented.yaw)[1] @ self._thing.pose[:3, :3].T
-        return self._strip(_corners(self._thing) @ across, across)
+        return self._strip(self._thing.placed_corners @ across, across)
 
     def _line_to(self, thing: Pipeline) -> Mask:
         """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another.
 
         A slender thing must have the other one in its own line, as the handle of a spoon has its bowl.
         """
-        ends = [_corners(each) for each in (self._thing, thing)]
+        ends = [each.placed_corners for each in (self._thing, thing)]
         along = ends[1].mean(axis=0) - ends[0].mean(axis=0)
         along[2] = 0.0
         along /= max(float(np.linalg.norm(along)), 1e-9)
@@ -515,9 +515,3 @@ class FlatThing:
         at = (rays - self._view.offset) @ np.linalg.inv(self._view.matrix).T @ across
         line: Mask = (depth > 0) & (at > offsets.min() - STRIP_MARGIN) & (at < offsets.max() + STRIP_MARGIN)
         return line
-
-
-def _corners(thing: Pipeline) -> NDArray[np.float64]:
-    """Return the corners (8, 3) of the turned box of a thing, in the table's frame."""
-    corners: NDArray[np.float64] = thing.oriented.corners @ thing.pose[:3, :3].T + thing.pose[:3, 3]
-    return corners

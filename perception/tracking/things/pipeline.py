@@ -194,6 +194,18 @@ class Pipeline:
         self._carried.append(self.pose[:3, 3])
         self._filter.reset(self.pose)
 
+    @property
+    def placed_points(self) -> NDArray[np.float64]:
+        """Its points where they are now in the table's frame, shape (n, 3), in metres."""
+        points: NDArray[np.float64] = self.cloud.points.astype(np.float64) @ self.pose[:3, :3].T + self.pose[:3, 3]
+        return points
+
+    @property
+    def placed_corners(self) -> NDArray[np.float64]:
+        """Corners of its turned box in the table's frame, shape (8, 3), in metres."""
+        corners: NDArray[np.float64] = self.oriented.corners @ self.pose[:3, :3].T + self.pose[:3, 3]
+        return corners
+
     def near_since(self, place: NDArray[np.float64], before: float) -> float:
         """Return since when the middle of a thing that has not moved has been near a place.
 
@@ -251,7 +263,7 @@ class Pipeline:
             True also for a thing that the image had shown in part.
         """
         ahead = self._velocity * seconds
-        corners = self.oriented.corners @ self.pose[:3, :3].T + self.pose[:3, 3] + ahead
+        corners = self.placed_corners + ahead
         return len(view.pixels(corners)[0]) < len(corners)
 
     def way_from_expected(self, place: NDArray[np.float64], seconds: float) -> float:

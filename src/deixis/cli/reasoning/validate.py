@@ -37,15 +37,16 @@ def validate(
         raise DeixisError("validate: --turtle and --json exclude each other")
     if files and memory is not None:
         raise DeixisError("validate: give files or --memory, not both")
+    chosen = shapes or SHAPES_FILE
     try:
         if files:
             with time_bar("checking the shapes", time_limit):
-                report = validated(files, shapes or SHAPES_FILE, time_limit)
+                report = validated(files, chosen, time_limit)
         else:
             from deixis.session import Session
 
             with Session(memory) as session, time_bar("checking the shapes", time_limit):
-                report = validated(session.memory(), shapes or SHAPES_FILE, time_limit)
+                report = validated(session.memory(), chosen, time_limit)
     except LimitError as error:
         print(f"deixis: {error}", file=sys.stderr)
         raise typer.Exit(UNDECIDED) from None

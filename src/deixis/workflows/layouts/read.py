@@ -69,8 +69,7 @@ def read_script(
     >>> deixis.read_script(text="The fork is left of the plate.", english=True).to_dict()["facts"][0]["subject"]
     'fork'
     """
-    if (path is None) == (text is None):
-        raise TypeError("`read_script` must be given either a path or `text`, not both or neither")
+    require_path_or_text("read_script", path, text)
     if text is not None and english:
         from deixis.grammar.english.reader import read_english
 
@@ -83,6 +82,20 @@ def read_script(
         if isinstance(path, str) and _looks_like_text(path):
             raise ScriptFileError(f"{error}; if {path[:60]!r} is the script itself, pass it as text=") from error
         raise
+
+
+def require_path_or_text(function: str, path: object, text: object) -> None:
+    """Raise TypeError unless exactly one of a path and a text is given.
+
+    Parameters
+    ----------
+    function
+        Name of the function that takes them.
+    path, text
+        The arguments; None for what is not given.
+    """
+    if (path is None) == (text is None):
+        raise TypeError(f"`{function}` must be given either a path or `text`, not both or neither")
 
 
 def read_layout_or_english(text: str, ontology: Ontology | None = None) -> Script:

@@ -13,6 +13,7 @@ from deixis.grammar.read import is_english, read_script_file
 from deixis.grammar.reading import Reading
 from deixis.grammar.script import Script
 from deixis.reasoning.errors import require_time_limit
+from deixis.workflows.layouts.read import require_path_or_text
 
 
 @dataclass(frozen=True, repr=False)
@@ -78,8 +79,7 @@ def read(
     >>> [sentence.paraphrase for sentence in deixis.read(text="Left of the plate is the fork.").reading.sentences]
     ['The fork is left of the plate.']
     """
-    if (path is None) == (text is None):
-        raise TypeError("`read` must be given either a path or `text`, not both or neither")
+    require_path_or_text("read", path, text)
     require_time_limit(time_limit)
     deadline = Deadline.after(time_limit)
     if path is not None and not is_english(path):

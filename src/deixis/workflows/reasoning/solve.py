@@ -28,6 +28,7 @@ from deixis.reasoning.qualitative.networks.realisation.boxes import unrelated
 from deixis.reasoning.qualitative.networks.search.consistency import Verdict
 from deixis.reasoning.qualitative.networks.search.consistency import solve as solve_network
 from deixis.reasoning.qualitative.relate import relate
+from deixis.workflows.layouts.read import require_path_or_text
 
 if TYPE_CHECKING:
     from deixis.reasoning.qualitative.calculi.calculus import Calculus
@@ -170,8 +171,7 @@ def solve(
     >>> print(deixis.solve(text="1\n0 1 ( DC )\n.\n", calculus="rcc8").verdict)
     consistent
     """
-    if (network is None) == (text is None):
-        raise TypeError("`solve` must be given either a path or `text`, not both or neither")
+    require_path_or_text("solve", network, text)
     if closure and scenario:
         raise DeixisError("`closure` and `scenario` exclude each other")
     require_time_limit(time_limit)

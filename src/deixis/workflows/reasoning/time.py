@@ -10,6 +10,7 @@ from deixis.reasoning.errors import require_time_limit
 from deixis.reasoning.qualitative.networks.closure.state import Progress
 from deixis.reasoning.temporal.chronology import Chronology
 from deixis.reasoning.temporal.timeline import Timeline
+from deixis.workflows.layouts.read import require_path_or_text
 
 
 def chronology(fluents: str | Path | None = None, *, text: str | None = None, time_limit: float = 10.0) -> Chronology:
@@ -47,8 +48,7 @@ def chronology(fluents: str | Path | None = None, *, text: str | None = None, ti
     >>> sorted(found.to_dict())
     ['exact', 'file', 'fluents', 'origin', 'verdict']
     """
-    if (fluents is None) == (text is None):
-        raise TypeError("`chronology` must be given either a path or `text`, not both or neither")
+    require_path_or_text("chronology", fluents, text)
     require_time_limit(time_limit)
     content = read_fluents(fluents) if fluents is not None else parse_fluents(text or "")
     return chronology_of(content, timeline_of(content, time_limit), time_limit)
