@@ -88,6 +88,20 @@ def read_lines(
             yield line
 
 
+def require_path_or_text(function: str, path: object, text: object) -> None:
+    """Raise TypeError unless exactly one of a path and a text is given.
+
+    Parameters
+    ----------
+    function
+        Name of the function that takes them.
+    path, text
+        The arguments; None for what is not given.
+    """
+    if (path is None) == (text is None):
+        raise TypeError(f"`{function}` must be given either a path or `text`, not both or neither")
+
+
 @contextmanager
 def changing(file: str | Path) -> Iterator[None]:
     """Keep other processes that call this function from changing the files of a folder inside the block.

@@ -14,6 +14,7 @@ from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.read import is_english, read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
+from deixis.text_files import require_path_or_text
 
 if TYPE_CHECKING:
     from deixis.perception.scene import Scene
@@ -82,20 +83,6 @@ def read_script(
         if isinstance(path, str) and _looks_like_text(path):
             raise ScriptFileError(f"{error}; if {path[:60]!r} is the script itself, pass it as text=") from error
         raise
-
-
-def require_path_or_text(function: str, path: object, text: object) -> None:
-    """Raise TypeError unless exactly one of a path and a text is given.
-
-    Parameters
-    ----------
-    function
-        Name of the function that takes them.
-    path, text
-        The arguments; None for what is not given.
-    """
-    if (path is None) == (text is None):
-        raise TypeError(f"`{function}` must be given either a path or `text`, not both or neither")
 
 
 def read_layout_or_english(text: str, ontology: Ontology | None = None) -> Script:

@@ -13,7 +13,7 @@ from deixis.grammar.read import is_english, read_script_file
 from deixis.grammar.reading import Reading
 from deixis.grammar.script import Script
 from deixis.reasoning.errors import require_time_limit
-from deixis.workflows.layouts.read import require_path_or_text
+from deixis.text_files import require_path_or_text
 
 
 @dataclass(frozen=True, repr=False)

@@ -28,7 +28,7 @@ from deixis.reasoning.qualitative.networks.realisation.boxes import unrelated
 from deixis.reasoning.qualitative.networks.search.consistency import Verdict
 from deixis.reasoning.qualitative.networks.search.consistency import solve as solve_network
 from deixis.reasoning.qualitative.relate import relate
-from deixis.workflows.layouts.read import require_path_or_text
+from deixis.text_files import require_path_or_text
 
 if TYPE_CHECKING:
     from deixis.reasoning.qualitative.calculi.calculus import Calculus

@@ -10,7 +10,7 @@ from deixis.reasoning.errors import require_time_limit
 from deixis.reasoning.qualitative.networks.closure.state import Progress
 from deixis.reasoning.temporal.chronology import Chronology
 from deixis.reasoning.temporal.timeline import Timeline
-from deixis.workflows.layouts.read import require_path_or_text
+from deixis.text_files import require_path_or_text
 
 
 def chronology(fluents: str | Path | None = None, *, text: str | None = None, time_limit: float = 10.0) -> Chronology:
