@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import gc
 import os
 import weakref
 from collections.abc import Callable
@@ -32,9 +33,16 @@ class Opened:
 
     def __init__(self, folder: Path, lock: OwnerLock | ReaderLock, read_only: str | None = None) -> None:
         self.folder, self.read_only, self._lock = folder, read_only, lock
-        self.store = open_store(folder) if read_only is None else open_for_reading(folder)
+        self._store: ox.Store | None = open_store(folder) if read_only is None else open_for_reading(folder)
         self.inherited = False
         _opened.add(self)
+
+    @property
+    def store(self) -> ox.Store:
+        """The store; after :meth:`shut` it is opened again."""
+        if self._store is None:
+            self._store = open_store(self.folder)
+        return self._store
 
     def close(self) -> None:
         """Close the store, then release the lock; in a forked child do neither."""
@@ -44,11 +52,18 @@ class Opened:
 
     def shut(self) -> None:
         """Close the store and keep the lock."""
-        del self.store
+        self._store = None
 
-    def reopen(self) -> None:
-        """Open the store again after :meth:`shut`."""
-        self.store = open_store(self.folder)
+    def shut_to_replace(self) -> None:
+        """Close the store before its files are replaced.
+
+        Raises
+        ------
+        MemoryBusyError
+            If an iterator of this process still reads the store.
+        """
+        self.shut()
+        open_store(self.folder)  # fails while an iterator holds the lock of the store that was closed
 
     def require_writable(self) -> None:
         """Raise ReadOnlyMemoryError if this is open for reading only.
@@ -69,7 +84,7 @@ def _leave_to_parent() -> None:
     """Keep a forked child from freeing its parent's stores, which would wait for threads that it does not have."""
     for opened in _opened:
         opened.inherited = True
-        store = getattr(opened, "store", None)
+        store = opened._store
         if store is not None:
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(store))
 
@@ -129,16 +144,37 @@ def open_store(folder: Path) -> ox.Store:
     MemoryBusyError
         If an iterator of this process still reads the store.
     MemoryWriteError
-        If the store cannot be opened for another reason.
+        If the store cannot be opened for another reason, or an interrupted replacement has left none.
     """
+    if not (folder / files.STORE).is_dir():
+        raise MemoryWriteError(
+            f"a change of the memory at {folder} was interrupted: open the memory again to repair it"
+        )
     try:
-        return ox.Store(folder / files.STORE)
+        return _store_without_iterators(folder / files.STORE)
     except (OSError, RuntimeError) as error:
-        if "lock hold by current process" in str(error):
+        if _HELD_HERE in str(error):
             raise MemoryBusyError(
                 f"the memory at {folder} is still read by this process: let go of what iterates over it, then try again"
             ) from error
         raise MemoryWriteError(f"the memory at {folder} could not be opened: {files.one_line(error)}") from error
+
+
+_HELD_HERE = "lock hold by current process"
+
+
+def _store_without_iterators(folder: Path) -> ox.Store:
+    """Open a store; if this process still has it open, first free iterators that only wait to be collected.
+
+    A query result of rdflib is a reference cycle, which holds an iterator of the store until it is collected.
+    """
+    try:
+        return ox.Store(folder)
+    except OSError as error:
+        if _HELD_HERE not in str(error):
+            raise
+    gc.collect()
+    return ox.Store(folder)
 
 
 def _fill(store: ox.Store) -> None:

@@ -150,14 +150,11 @@ def _swap_in(opened: Opened, fill: Callable[[Path], None], mark: dict[str, Any])
         opened.store.flush()
         try:
             fill(aside)
+            opened.shut_to_replace()
         except BaseException:
             shutil.rmtree(aside, ignore_errors=True)
             raise
-        opened.shut()
-        try:
-            files.swap(opened.folder, mark)
-        finally:
-            opened.reopen()
+        files.swap(opened.folder, mark)
 
 
 def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Quad]:
@@ -773,7 +770,7 @@ class _OpenedCopy(Opened):
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.read_only, self.inherited = folder, None, False
-        self.store = ox.Store(folder)
+        self._store = ox.Store(folder)
 
     def close(self) -> None:
         self.shut()

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable
 from pathlib import Path
 
 import pyoxigraph as ox
 import pytest
 
-from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
-from deixis.memory.folder import VERSION
+from deixis.memory import owner as disk
+from deixis.memory.errors import (
+    MemoryBusyError,
+    MemoryFormatError,
+    MemoryWriteError,
+    RejectedWriteError,
+    UnknownLessonError,
+)
+from deixis.memory.folder import NEW, VERSION
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.semantic.rdf.graphs import ORDER, GraphName, lesson_graph
 from deixis.memory.semantic.store import SemanticMemory
@@ -168,3 +176,58 @@ def test_loading_keeps_a_view_from_reading_stale_data(taught: SemanticMemory, re
     taught.load({GraphName.ASSERTED: read("<urn:a> <urn:p> 1 .")})
     assert taught.lessons() == ("dinner-1", "dinner-2")
     assert taught.query("ASK { <urn:a> ?p 1 }").boolean is True
+
+
+def learn_in_bulk(memory: SemanticMemory, make_lesson: MakeLesson) -> None:
+    lesson = {
+        graph: triples for graph, triples in make_lesson("dinner-2", day=2).items() if graph is not GraphName.INFERRED
+    }
+    memory.commit_in_bulk(lambda copy: copy.commit(copy.arrival({"dinner-2": lesson})))
+
+
+def test_a_bulk_commit_while_an_iterator_reads_changes_nothing(
+    memory: SemanticMemory, learn: Learn, make_lesson: MakeLesson
+) -> None:
+    learn(memory, "dinner-1")
+    reading = iter(memory.store.quads_for_pattern(None, None, None, None))
+    with pytest.raises(MemoryBusyError, match="let go of what iterates over it"):
+        learn_in_bulk(memory, make_lesson)
+    with pytest.raises(MemoryBusyError, match="let go of what iterates over it"):
+        memory.lessons()
+    del reading
+    assert memory.lessons() == ("dinner-1",)
+    assert not (memory.path / NEW).exists()
+
+
+def test_a_query_that_rdflib_has_answered_does_not_block_bulk_commits(
+    memory: SemanticMemory, learn: Learn, make_lesson: MakeLesson
+) -> None:
+    learn(memory, "dinner-1")
+    gc.disable()
+    try:
+        assert len(memory.dataset().query("SELECT ?s WHERE { ?s a ?type }")) > 0
+        learn_in_bulk(memory, make_lesson)
+    finally:
+        gc.enable()
+    assert memory.lessons() == ("dinner-1", "dinner-2")
+
+
+def test_an_interrupted_replacement_is_undone_at_the_next_opening(
+    tmp_path: Path, learn: Learn, make_lesson: MakeLesson, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_space(old: Path, new: Path) -> None:
+        if old.name == NEW:
+            raise OSError(28, "No space left on device")
+        rename(old, new)
+
+    rename = disk.rename
+    with SemanticMemory.open(tmp_path / "m", create=True) as memory:
+        learn(memory, "dinner-1")
+        with monkeypatch.context() as patched:
+            patched.setattr(disk, "rename", no_space)
+            with pytest.raises(MemoryWriteError, match="No space left"):
+                learn_in_bulk(memory, make_lesson)
+        with pytest.raises(MemoryWriteError, match="open the memory again"):
+            memory.lessons()
+    with SemanticMemory.open(tmp_path / "m") as memory:
+        assert memory.lessons() == ("dinner-1",)
