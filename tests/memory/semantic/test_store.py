@@ -199,7 +199,7 @@ def test_a_bulk_commit_while_an_iterator_reads_changes_nothing(
     assert not (memory.path / NEW).exists()
 
 
-def test_a_query_that_rdflib_has_answered_does_not_block_bulk_commits(
+def test_an_answered_query_of_rdflib_does_not_block_bulk_commits(
     memory: SemanticMemory, learn: Learn, make_lesson: MakeLesson
 ) -> None:
     learn(memory, "dinner-1")
@@ -212,7 +212,7 @@ def test_a_query_that_rdflib_has_answered_does_not_block_bulk_commits(
     assert memory.lessons() == ("dinner-1", "dinner-2")
 
 
-def test_an_interrupted_replacement_is_undone_at_the_next_opening(
+def test_an_interrupted_replacement_is_undone_at_next_opening(
     tmp_path: Path, learn: Learn, make_lesson: MakeLesson, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def no_space(old: Path, new: Path) -> None:
