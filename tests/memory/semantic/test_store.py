@@ -179,10 +179,9 @@ def test_loading_keeps_a_view_from_reading_stale_data(taught: SemanticMemory, re
 
 
 def learn_in_bulk(memory: SemanticMemory, make_lesson: MakeLesson) -> None:
-    lesson = {
-        graph: triples for graph, triples in make_lesson("dinner-2", day=2).items() if graph is not GraphName.INFERRED
-    }
-    memory.commit_in_bulk(lambda copy: copy.commit(copy.arrival({"dinner-2": lesson})))
+    made = make_lesson("dinner-2", day=2)
+    lesson = {"dinner-2": {graph: made[graph] for graph in (GraphName.ASSERTED, GraphName.LEARNED)}}
+    memory.commit_in_bulk(lambda copy: copy.commit(copy.arrival(lesson)))
 
 
 def test_a_bulk_commit_while_an_iterator_reads_changes_nothing(
