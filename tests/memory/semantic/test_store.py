@@ -180,7 +180,7 @@ def test_loading_keeps_a_view_from_reading_stale_data(taught: SemanticMemory, re
 
 def learn_in_bulk(memory: SemanticMemory, make_lesson: MakeLesson) -> None:
     made = make_lesson("dinner-2", day=2)
-    lesson = {"dinner-2": {graph: made[graph] for graph in (GraphName.ASSERTED, GraphName.LEARNED)}}
+    lesson = {"dinner-2": {graph: made[graph] for graph in made.keys() - {GraphName.INFERRED}}}
     memory.commit_in_bulk(lambda copy: copy.commit(copy.arrival(lesson)))
 
 
