@@ -235,7 +235,7 @@ def _posterior_notes(evidence: Evidence, probable: Posterior) -> tuple[str, ...]
             f"not enough {lacking} to sample the probabilities of matches: belief propagation estimated them, and no "
             "match is decided",
         )
-    if not math.isfinite(probable.error):
+    if probable.is_unknown:
         return ("time limit reached before the probabilities of the matches were computed",)
     apart = [name for name, error in zip(evidence.description.nodes, probable.errors, strict=True) if error > APART]
     if probable.exact or not apart:

@@ -139,6 +139,9 @@ NOT_LISTED = 1e-3
 SEARCH_EFFORT = 0.05
 """Effort of the search that estimates the weight of a side."""
 
+POSTERIOR_SHARE = 0.9
+"""Share of the time for a side's posterior; the rest is for its coincidences."""
+
 ENTROPY_SHARE = 0.27
 """Excess of the logarithm of the sum over the best value, per nat of the sum of the objects' entropies: a least-squares
 fit to 100 generated tables on which both are exact."""
@@ -232,7 +235,7 @@ def weigh(
     (0.99, [0.991, 0.001, 0.001])
     """
     first = _maps_of(evidence, assignment, deadline.share(0.6))
-    if first.found is None or not (math.isfinite(first.found.error) or first.found.is_propagated):
+    if first.found is None or first.found.is_unknown:
         return None
     problem, readings = evidence.problem, evidence.label_readings
     alone = _log_sum([weight + log_sum_without_facts(known.without_facts) for weight, known in readings])
@@ -319,9 +322,9 @@ def _maps_of(
         found, total = None, value + spread
         enough = max([not_listed, *(one[1] + math.log(NOT_LISTED) for one in seen)])
         if weight + total >= enough and (not seen or not deadline.passed):
-            found = posterior(problem, deadline, start=best, chains=not known.memory_limited)
+            found = posterior(problem, deadline.share(POSTERIOR_SHARE), start=best, chains=not known.memory_limited)
             total = log_total(found, value)
-            found = discounted(problem, found)
+            found = discounted(problem, found, deadline)
             if known.whole is not None:
                 found, total = _of_shortlist(found, known.whole), total + _log_outside(known)
         seen.append((weight + value, weight + total, known, found))

@@ -24,12 +24,15 @@ probability of absence is near that share and is kept. ``benchmarks/fit_coincide
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 
@@ -46,6 +49,9 @@ ITERATIONS, SETTLED = 20, 1e-6
 that share at which they end."""
 
 MAX_LOG_ODDS = 50.0
+
+FACTS_AT_ONCE = 256
+"""Number of facts after which the time limit is checked."""
 
 TIE_DIGITS = 6
 """Decimal digits of probabilities, so that rounding errors do not choose between equally probable things."""
@@ -120,7 +126,7 @@ class Coincidences:
         return remaining
 
 
-def coincidences(problem: Problem, marginals: Array) -> Coincidences:
+def coincidences(problem: Problem, marginals: Array, deadline: Deadline = Deadline.never()) -> Coincidences:
     """Return the possible coincidences of a problem of n1 objects and n2 things.
 
     The values of facts are expected values over the things that the other object may be, and 0 where it is absent.
@@ -131,11 +137,18 @@ def coincidences(problem: Problem, marginals: Array) -> Coincidences:
         The problem of n1 objects and n2 things.
     marginals
         Posterior probability of each match, shape (n1, n2 + 1); the last column is that of absence.
+    deadline
+        Time limit.
 
     Returns
     -------
     Coincidences
         Evidence, misfit and alternatives of the likeliest match of each object.
+
+    Raises
+    ------
+    OutOfTimeError
+        If the time limit is reached.
     """
     n1, n2 = problem.unary.shape
     things, away = marginals[:, :n2].astype(np.float32), marginals[:, n2]
@@ -146,10 +159,15 @@ def coincidences(problem: Problem, marginals: Array) -> Coincidences:
             continue
         likelihood = np.exp(table)
         for ends, others, at in ((subjects, objects, likelihood), (objects, subjects, likelihood.T)):
-            missing = away[others]
-            np.add.at(values, ends, np.log(things[others] @ at.T + missing[:, None]))
-            # no product by BLAS, whose kernel for vectors may flag an invalid value where there is none
-            np.add.at(largest, ends, np.log((things[others] * at.max(axis=0)).sum(axis=1) + missing))
+            most = at.max(axis=0)
+            for first in range(0, len(ends), FACTS_AT_ONCE):
+                if deadline.passed:
+                    raise OutOfTimeError("time limit reached before coincidences were computed")
+                part = slice(first, first + FACTS_AT_ONCE)
+                there, missing = things[others[part]], away[others[part]]
+                np.add.at(values, ends[part], np.log(there @ at.T + missing[:, None]))
+                # no product by BLAS, whose kernel for vectors may flag an invalid value where there is none
+                np.add.at(largest, ends[part], np.log((there * most).sum(axis=1) + missing))
     rows, chosen = np.arange(n1), np.round(marginals[:, :n2], TIE_DIGITS).argmax(axis=1)
     there = values[rows, chosen]
     relative = np.exp(np.minimum(values - there[:, None], MAX_LOG_ODDS))
@@ -166,7 +184,7 @@ def coincidences(problem: Problem, marginals: Array) -> Coincidences:
     )
 
 
-def discounted(problem: Problem, found: Posterior) -> Posterior:
+def discounted(problem: Problem, found: Posterior, deadline: Deadline = Deadline.never()) -> Posterior:
     """Return the posterior with the probability that matches are coincidences added to that of absence.
 
     Parameters
@@ -175,11 +193,14 @@ def discounted(problem: Problem, found: Posterior) -> Posterior:
         The problem.
     found
         Its posterior.
+    deadline
+        Time limit. Where it is reached, the probabilities count as unknown: their error is infinite.
 
     Returns
     -------
     Posterior
-        Copy with new marginals; ``found`` itself where there are no facts, objects or things.
+        Copy with new marginals; ``found`` itself where there are no facts, objects or things, or its probabilities are
+        unknown.
 
     Examples
     --------
@@ -189,11 +210,14 @@ def discounted(problem: Problem, found: Posterior) -> Posterior:
     >>> discounted(problem, sure).marginals[:, 2].round(3).tolist()  # the probabilities of absence
     [0.01, 0.01]
     """
-    if not problem.unary.size or not len(problem.ends):
+    if not problem.unary.size or not len(problem.ends) or found.is_unknown:
         return found
     # With few facts, each estimate of the share from the discounted probabilities would be larger.
     iterations = 1 if found.absent_counted else ITERATIONS
-    remaining = coincidences(problem, found.marginals).remaining(iterations=iterations)
+    try:
+        remaining = coincidences(problem, found.marginals, deadline).remaining(iterations=iterations)
+    except OutOfTimeError:
+        return replace(found, error=math.inf, errors=np.full_like(found.errors, math.inf), is_propagated=False)
     marginals = found.marginals * remaining[:, None]
     marginals[:, -1] += 1.0 - remaining
     return replace(found, marginals=marginals)

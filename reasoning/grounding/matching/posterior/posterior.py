@@ -98,6 +98,11 @@ class Posterior:
             object.__setattr__(self, "errors", np.full(len(self.marginals), self.error))
 
     @property
+    def is_unknown(self) -> bool:
+        """True if the time limit was reached before any marginals were computed."""
+        return not (math.isfinite(self.error) or self.is_propagated)
+
+    @property
     def entropy(self) -> Marginals:
         """Entropy of each object's marginal in nats, shape (n1,): 0 where it is certain."""
         p = self.marginals

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.problem import Compiled
 from deixis.reasoning.grounding.matching.search.assignment import solve_assignment
 from deixis.reasoning.kernel import njit
@@ -115,39 +116,6 @@ def _reassign(i, p, state, problem):  # type: ignore[no-untyped-def]
     state.labels[i] = p
 
 
-@njit(cache=True, nogil=True)
-def climb(labels, problem):  # type: ignore[no-untyped-def]
-    """Apply the best move or swap of one object after another, until none improves the map.
-
-    Parameters
-    ----------
-    labels
-        Thing of each object, shape (n1,), changed in place.
-    problem
-        The problem in the layout of compiled loops.
-    """
-    out = problem.unary.shape[1] - 1
-    holder = np.full(out + 1, -1)
-    for i in range(len(labels)):
-        holder[labels[i]] = i
-    holder[out] = -1
-    gain, better = np.empty(out + 1), True
-    while better:
-        better = False
-        for i in range(len(labels)):
-            gains_of(i, labels, problem, gain)
-            best, chosen = 1e-9, -1
-            for p in range(out + 1):
-                j = holder[p]  # who would get what object i has
-                if p != labels[i] and problem.allowed[i, p] and (j < 0 or problem.allowed[j, labels[i]]):
-                    gained = _exchange_gain(i, p, j, gain, labels, problem)
-                    if gained > best:
-                        best, chosen = gained, p
-            if chosen >= 0:
-                better = True
-                _exchange(i, chosen, labels, holder, out)
-
-
 MIN_GAIN = 1e-6  # minimum improvement of a map
 MAX_PAIRED_CELLS = 5_000_000  # pairs of things that :func:`move_pairs` tries, times the facts between the two objects
 
@@ -230,35 +198,6 @@ def gains_of(i, labels, problem, gain):  # type: ignore[no-untyped-def]
             gain[p] += problem.tables[kind, q, p]
 
 
-@njit(cache=True)
-def _exchange_gain(i, p, j, gain, labels, problem):  # type: ignore[no-untyped-def]
-    """Return the gain of giving object i thing p, and i's thing to object j, which had p (-1: none had it)."""
-    old = labels[i]
-    gained = gain[p] - gain[old]
-    if j < 0:
-        return gained
-    gained += problem.unary[j, old] - problem.unary[j, p]
-    for slot in range(problem.first[j], problem.first[j + 1]):
-        table, k = problem.tables[problem.kind[slot]], problem.other[slot]
-        if k == i:  # counted at i's end with j still at p
-            gained += np.float64(table[old, p]) - np.float64(table[p, p])
-        else:
-            gained += np.float64(table[old, labels[k]]) - np.float64(table[p, labels[k]])
-    return gained
-
-
-@njit(cache=True)
-def _exchange(i, p, labels, holder, out):  # type: ignore[no-untyped-def]
-    old, j = labels[i], holder[p]
-    labels[i] = p
-    if p < out:
-        holder[p] = i
-    if j >= 0:
-        labels[j] = old
-    if old < out:
-        holder[old] = j
-
-
 NOISE_TABLE_SIZE = 1 << 13  # Gumbel numbers in a table, read from random positions
 MIN_GAIN_SINGLE = 1e-4  # minimum improvement of a map: above the error of gains in single precision
 
@@ -313,6 +252,30 @@ def anneal(state, best, ahead, problem, sweeps, temperatures, noise, seeds):  # 
     return ahead
 
 
+def climb(labels: NDArray[np.int64], problem: Compiled, deadline: Deadline = Deadline.never()) -> None:
+    """Apply the best move or swap of one object after another, until no sweep over all objects improves the map.
+
+    Improvements below ``MIN_GAIN_SINGLE`` do not count.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    deadline
+        End of the time limit; the map so far is left then.
+    """
+    state, ahead, sweep = keep(labels, problem), 0.0, 0
+    cold, noise = np.zeros(1), np.zeros(NOISE_TABLE_SIZE + len(state.holder), np.float32)
+    while not deadline.passed:
+        before = labels.copy()
+        ahead = anneal(state, labels, ahead, problem, 1, cold, noise, np.array([sweep]))
+        if (labels == before).all():
+            return
+        sweep += 1
+
+
 @njit(cache=True)
 def _draw(i, state, problem, temperature, noise, at, facts):  # type: ignore[no-untyped-def]
     """Draw a thing for object i; return it and the gain. The buffer ``facts`` (n2 + 1,) is all 0 before and after."""
@@ -336,8 +299,13 @@ def _draw(i, state, problem, temperature, noise, at, facts):  # type: ignore[no-
     return chosen, gained
 
 
-@njit(cache=True, nogil=True)
-def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
+CELLS_PER_CLOCK_CHECK = 2e6
+"""Number of gains that are computed between two looks at the clock."""
+
+
+def reassign(
+    labels: NDArray[np.int64], problem: Compiled, patience: int, seed: int, deadline: Deadline = Deadline.never()
+) -> float:
     """Reassign random sets of objects until ``patience`` sets in a row do not help; return the total gain.
 
     Parameters
@@ -350,18 +318,32 @@ def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
         Number of sets without a gain after which to stop.
     seed
         Seed of the random numbers.
+    deadline
+        End of the time limit; the map so far is left then.
 
     Returns
     -------
     float
         Total gain in nats.
     """
+    total, failed, sets = 0.0, 0, max(1, int(CELLS_PER_CLOCK_CHECK / max(1, problem.unary.size)))
+    while failed < patience and not deadline.passed:
+        gained, failed = _reassign_sets(labels, problem, patience, failed, sets, seed)
+        total, seed = total + gained, seed + 1
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _reassign_sets(labels, problem, patience, failed, sets, seed):  # type: ignore[no-untyped-def]
+    """Reassign at most ``sets`` sets; return the gain, and how many sets in a row have not helped."""
     np.random.seed(seed)
     n1, width = problem.unary.shape
     cells, row, things = np.empty(n1 * width), np.empty(width), np.empty(width, np.int64)
     column_of, profit, price = np.empty(n1, np.int64), np.empty(n1), np.empty(width)
-    total, failed = 0.0, 0
-    while failed < patience:
+    total = 0.0
+    for _ in range(sets):
+        if failed >= patience:
+            break
         chosen = _without_facts_between(problem)
         n_free = _free(labels, chosen, things)
         gain = cells[: len(chosen) * (n_free + 1)].reshape(len(chosen), n_free + 1)
@@ -377,7 +359,7 @@ def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
         if gained > MIN_GAIN:
             labels[chosen] = things[columns]
             total, failed = total + gained, 0
-    return total
+    return total, failed
 
 
 @njit(cache=True)

@@ -21,6 +21,7 @@ from deixis.reasoning.grounding.matching.problem import Compiled, Problem, to_as
 from deixis.reasoning.grounding.matching.search.belief_propagation import likeliest_map, propagate
 from deixis.reasoning.grounding.matching.search.coarse_to_fine import CoarseToFine, is_large
 from deixis.reasoning.grounding.matching.search.local_search import (
+    CELLS_PER_CLOCK_CHECK,
     NOISE_TABLE_SIZE,
     anneal,
     climb,
@@ -54,7 +55,6 @@ PARALLEL_EFFORT, FOLLOWING_EFFORT = (
 )  # of the sweeps, where there are both: to anneal from nothing, and what the other finds
 MIN_PROPAGATION_EFFORT = 0.2  # below, belief propagation has too few steps
 MAX_TIME_SHARE = 1.25  # times its equal share of the time left that a temperature may take
-CELLS_PER_CLOCK_CHECK = 2e6  # cells of the sweeps between two looks at the clock
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +159,7 @@ def search_from(
         best, finished = _propagated(labels, compiled, deadline, seed, effort, most)
         other, finished_too = beside.result()
     if combine(best, other, compiled) > 0.0:
-        climb(best, compiled)
+        climb(best, compiled, deadline)
     return best, finished and finished_too
 
 
@@ -180,12 +180,12 @@ def _annealed(
         combine(best, found, compiled)
         if not finished:
             return best, False
-    climb(best, compiled)
-    if reassign(best, compiled, PATIENCE, seed) > 0.0:
-        climb(best, compiled)
-    if move_pairs(best, compiled) > 0.0:
-        climb(best, compiled)
-    return best, True
+    climb(best, compiled, deadline)
+    if reassign(best, compiled, PATIENCE, seed, deadline) > 0.0:
+        climb(best, compiled, deadline)
+    if not deadline.passed and move_pairs(best, compiled) > 0.0:
+        climb(best, compiled, deadline)
+    return best, not deadline.passed
 
 
 def _random_numbers(seed: int, width: int) -> tuple[np.random.Generator, NDArray[np.float32]]:
@@ -223,7 +223,7 @@ def _propagated(
         found = likeliest_map(beliefs, compiled)
     if found is None:
         return _annealed(labels, compiled, deadline, seed + 1, effort, most)
-    climb(found, compiled)
+    climb(found, compiled, deadline)
     best = labels.copy()
     combine(best, found, compiled)
     return _annealed(best, compiled, deadline, seed + 1, FOLLOWING_EFFORT * effort, most)

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from matching_problems import problems
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.posterior.coincidences import (
     CERTAINLY_PRESENT,
     PRIOR_ABSENT,
@@ -67,6 +68,12 @@ def test_discounted_rows_are_distributions_with_more_absence(problem: Problem) -
     after = discounted(problem, before).marginals
     np.testing.assert_allclose(after.sum(axis=1), 1.0, atol=1e-6)
     assert (after[:, :-1] <= before.marginals[:, :-1] + 1e-12).all()
+
+
+def test_past_the_deadline_the_probabilities_are_unknown() -> None:
+    problem, found = row(4.0)
+    assert not found.is_unknown
+    assert discounted(problem, found, Deadline.after(0.0)).is_unknown
 
 
 def test_a_match_that_misses_facts_is_less_probable() -> None:
