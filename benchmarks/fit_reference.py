@@ -51,7 +51,7 @@ def main() -> None:
     for fold in range(FOLDS):
         held = set(rooms[fold::FOLDS])
         train = [example for one, example in examples if one.room not in held]
-        model = replace(start, weights=fit(start, train, PENALTY, ITERATIONS))
+        model = replace(start, weights=fit(start, train, PENALTY, ITERATIONS).weights)
         models |= dict.fromkeys(held, model)
     told_by_people = {id(one) for one in people}
     answered = [(one, models[one.room], example) for one, example in examples if id(one) in told_by_people]
@@ -62,7 +62,7 @@ def main() -> None:
     for name, those in (("Nr3D", people), ("Sr3D", generated[::5])):
         print(f"{name}, held-out rooms: {figures(name, [(one, models[one.room]) for one in those])}", flush=True)
     if len(sys.argv) > 1:
-        weights = fit(start, [example for _, example in examples], PENALTY, ITERATIONS)
+        weights = fit(start, [example for _, example in examples], PENALTY, ITERATIONS).weights
         power = fit_calibration([(model, example) for _, model, example in answered])
         counts = (len(people), len(longer), min(GENERATED, len(generated)))
         write_reference(model_with({**weights, "calibration": power}), Path(sys.argv[1]), source(*counts))

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from deixis.robot.looking import Look
     from deixis.robot.robot import Robot, Told
     from deixis.session import Session
+    from deixis.workflows.descriptions.learn_reference import LearnedReference, learn_reference
     from deixis.workflows.descriptions.refer import refer
     from deixis.workflows.descriptions.tell import tell
     from deixis.workflows.descriptions.telling import Telling
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from deixis.workflows.grounding.check import Check, check
     from deixis.workflows.grounding.ground import ground
     from deixis.workflows.grounding.retrieve import Retrieval, retrieve
+    from deixis.workflows.knowledge.episodes import Consolidation
     from deixis.workflows.knowledge.habits import Placements, habits
     from deixis.workflows.knowledge.learn import Learned
     from deixis.workflows.knowledge.recall import Recall
@@ -77,6 +79,7 @@ __all__ = [
     "ActivityGrounding",
     "Check",
     "Chronology",
+    "Consolidation",
     "CountedConcept",
     "DeixisError",
     "Entailment",
@@ -86,6 +89,7 @@ __all__ = [
     "Inference",
     "LayoutConcept",
     "Learned",
+    "LearnedReference",
     "LearnedWords",
     "Lint",
     "Look",
@@ -126,6 +130,7 @@ __all__ = [
     "habits",
     "imagine",
     "infer",
+    "learn_reference",
     "lint",
     "perceive",
     "point",
@@ -147,6 +152,7 @@ _HOMES = {
     "ActivityGrounding": "deixis.reasoning.activities.grounding",
     "Check": "deixis.workflows.grounding.check",
     "Chronology": "deixis.reasoning.temporal.chronology",
+    "Consolidation": "deixis.workflows.knowledge.episodes",
     "CountedConcept": "deixis.learning.layouts.concept",
     "DeixisError": "deixis.errors",
     "Entailment": "deixis.reasoning.description_logic.entailment",
@@ -156,6 +162,7 @@ _HOMES = {
     "Inference": "deixis.workflows.layouts.infer",
     "LayoutConcept": "deixis.ontology.lessons.types",
     "Learned": "deixis.workflows.knowledge.learn",
+    "LearnedReference": "deixis.workflows.descriptions.learn_reference",
     "LearnedWords": "deixis.learning.models.words",
     "Lint": "deixis.workflows.layouts.lint",
     "Look": "deixis.robot.looking",
@@ -196,6 +203,7 @@ _HOMES = {
     "habits": "deixis.workflows.knowledge.habits",
     "imagine": "deixis.workflows.layouts.imagine",
     "infer": "deixis.workflows.layouts.infer",
+    "learn_reference": "deixis.workflows.descriptions.learn_reference",
     "lint": "deixis.workflows.layouts.lint",
     "perceive": "deixis.workflows.scenes.perceive",
     "point": "deixis.workflows.scenes.point",

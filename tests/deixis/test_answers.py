@@ -20,6 +20,7 @@ from deixis.workflows.layouts.lay_table import lay_script
 
 SCRIPT = deixis.read_script("examples/formal_dinner.layout")
 SCENE = deixis.read_scene("examples/place_setting.scene.json")
+DESCRIPTION = json.dumps({"text": "the bin near the door", "scene": "examples/study.scene.json", "target": "o14"})
 PNG = b"\x89PNG"
 
 
@@ -63,6 +64,8 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
         "ShapesReport": deixis.validate("ontology/deixis.ttl"),
         "Chronology": deixis.chronology("examples/serving.fluents.json"),
         "Related": deixis.relate(SCENE, "cd"),
+        "Consolidation": deixis.Consolidation({"dinner": "dinner-1"}, {"walk": "nothing was said in it"}),
+        "LearnedReference": deixis.learn_reference([DESCRIPTION], strength=0.3),
         "Tracking": deixis.Tracking((thing,), (thing,), frames=2, seconds=0.1),
     }
 

@@ -101,6 +101,11 @@ RENDERERS = {
         "report.knowledge.recall:recall_rows",
     ),
     "Unlearned": Renderer("report.knowledge.unlearn:unlearned_to_dict", "report.knowledge.unlearn:unlearned_lines"),
+    "Consolidation": Renderer(
+        "report.knowledge.consolidate:consolidated_to_dict",
+        "report.knowledge.consolidate:consolidated_lines",
+        "report.knowledge.consolidate:consolidated_rows",
+    ),
     "Shown": Renderer(
         "report.scenes.point:shown_to_dict", "report.scenes.point:shown_lines", "report.scenes.point:shown_rows"
     ),
@@ -134,6 +139,11 @@ RENDERERS = {
         "report.descriptions.relation:learned_words_to_dict",
         "report.descriptions.relation:learned_words_lines",
         "report.descriptions.relation:learned_words_rows",
+    ),
+    "LearnedReference": Renderer(
+        "report.descriptions.relation:learned_reference_to_dict",
+        "report.descriptions.relation:learned_reference_lines",
+        "report.descriptions.relation:learned_reference_rows",
     ),
     "Look": Renderer(
         "report.scenes.robot:look_to_dict",

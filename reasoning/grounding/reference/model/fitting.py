@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.things.colours import Colours
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.reference.features.nouns import NOUN_FEATURES, NUMBER_FEATURES
 from deixis.reasoning.grounding.reference.features.properties import SIZES, property_features
 from deixis.reasoning.grounding.reference.features.relations import FAMILIES, RELATIONS, Pairs
@@ -30,14 +32,24 @@ class Example:
     target: int
 
 
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """Weights by name, each of the shape that they have in the model, after a number of steps of the search."""
+
+    weights: dict[str, Array]
+    steps: int
+    converged: bool
+
+
 def fit(
     model: Model,
     examples: Sequence[Example],
     penalty: float,
     iterations: int = 60,
     progress: Callable[[int, int], None] | None = None,
-) -> dict[str, Array]:
-    """Return the weights that make the described objects most probable.
+    deadline: Deadline = Deadline.never(),
+) -> Fitted:
+    """Find the weights that make the described objects most probable.
 
     Parameters
     ----------
@@ -51,11 +63,13 @@ def fit(
         Maximum number of steps of L-BFGS.
     progress
         Called after each step with the number of steps done and their maximum.
+    deadline
+        End of the time limit; the weights so far are the answer then.
 
     Returns
     -------
-    dict
-        Weights by name, each of the shape that they have in ``model``.
+    Fitted
+        The weights, and whether the search converged.
     """
     from scipy.optimize import minimize
 
@@ -68,6 +82,8 @@ def fit(
         weights = dict(zip(names, np.split(values, ends), strict=True))
         total, slopes = 0.0, {name: np.zeros_like(weights[name]) for name in names}
         for base, example in zip(kept, examples, strict=True):
+            if deadline.passed:
+                raise OutOfTimeError("time limit reached while the weights were fitted")
             here = replace(base, weights=weights)
             found = log_probability(here, example)
             if found is None:
@@ -78,14 +94,18 @@ def fit(
         slope = np.concatenate([slopes[name] for name in names])
         return total + penalty * float(off @ off), 2 * penalty * off - slope
 
-    steps = itertools.count(1)
+    reached, steps, converged = start, 0, False
 
     def step(values: Array) -> None:
+        nonlocal reached, steps
+        reached, steps = values.copy(), steps + 1
         if progress is not None:
-            progress(next(steps), iterations)
+            progress(steps, iterations)
 
-    found = minimize(loss, start, jac=True, method="L-BFGS-B", callback=step, options={"maxiter": iterations})
-    return dict(zip(names, np.split(found.x, ends), strict=True))
+    with suppress(OutOfTimeError):
+        found = minimize(loss, start, jac=True, method="L-BFGS-B", callback=step, options={"maxiter": iterations})
+        reached, converged = found.x, bool(found.success)
+    return Fitted(dict(zip(names, np.split(reached, ends), strict=True)), steps, converged)
 
 
 def log_probability(model: Model, example: Example) -> Score | None:

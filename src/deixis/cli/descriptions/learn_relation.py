@@ -50,6 +50,14 @@ def learn_relation(
     ] = None,
     models: Models = None,
     strength: Annotated[float, typer.Option(metavar="WEIGHT", help="Weight of the shipped models, above 0.")] = 3.0,
+    time_limit: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            metavar="SECONDS",
+            help="With --descriptions: end the fit after this time.",
+        ),
+    ] = 600.0,
     reset: Annotated[bool, typer.Option("--reset", help="Remove the learned models; keep the lessons.")] = False,
     memory: MemoryDir = None,
     no_memory: NoMemory = False,
@@ -65,7 +73,7 @@ def learn_relation(
     if descriptions is not None:
         if files or models or reset:
             raise typer.BadParameter("--descriptions takes no scripts, no --models and no --reset")
-        _learn_reference(descriptions, out, strength, as_json)
+        _learn_reference(descriptions, out, strength, time_limit, as_json)
         return
     _require_fitting(files, out, models, reset, no_memory)
     if out is not None:
@@ -95,11 +103,10 @@ def learn_relation(
         print_written(out)
 
 
-def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_json: bool) -> None:
+def _learn_reference(descriptions: Path, out: Path | None, strength: float, time_limit: float, as_json: bool) -> None:
     """Learn the weights of ``deixis refer`` from a file of descriptions, and write them to ``out``."""
     from deixis.errors import DeixisError
-    from deixis.report.descriptions.relation import learned_reference_lines, learned_reference_to_dict
-    from deixis.text_files import read_text
+    from deixis.report.descriptions.relation import learned_reference_to_dict
     from deixis.workflows.descriptions.learn_reference import learn_reference, write_reference
 
     if out is None:
@@ -107,13 +114,12 @@ def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_j
     require_ending(out, (".json",), "a file of weights")
     require_writable([out], [descriptions])
     with progress_bar("fitting the weights") as progress:
-        lines = read_text(descriptions).split("\n")
-        learned = learn_reference(lines, descriptions.parent, strength, progress=progress)
+        learned = learn_reference(descriptions, strength, progress=progress, time_limit=time_limit)
     write_reference(learned.model, out, f"Learned from {learned.descriptions} descriptions in {descriptions.name}")
     if as_json:
         print_json(learned_reference_to_dict(learned, str(out)))
     else:
-        print_lines(learned_reference_lines(learned))
+        print_lines(learned.to_text().split("\n"))
         print_written(out)
 
 

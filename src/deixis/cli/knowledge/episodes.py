@@ -372,13 +372,9 @@ def consolidate(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     ):
         done = run(board, session)
     if as_json:
-        print_json({"lessons": done.lessons, "left_out": done.left_out})
+        print_json(done.to_dict())
         return
-    print_lines(f"{name}: lesson {lesson}" for name, lesson in done.lessons.items())
-    for name, reason in done.left_out.items():
-        print_note(f"{name}: {reason}")
-    if not done.lessons:
-        print_line("Nothing was learned.")
+    print_lines(done.to_text().split("\n"))
 
 
 @contextmanager

@@ -203,11 +203,13 @@ def learned_reference_lines(learned: LearnedReference) -> list[str]:
     """
     before, after = learned.right
     lines = [f"learned from {count(learned.descriptions, 'description')}; right before: {before}, now: {after}"]
+    if not learned.converged:
+        lines.append(f"the fit ended after {count(learned.steps, 'step')}, before it converged")
     lines += [f"{name:<24} changed by up to {step:.2f}" for name, step in [*learned.changed.items()][:MAX_LISTED]]
     return lines + [f"left out    {why}" for why in learned.left_out]
 
 
-def learned_reference_to_dict(learned: LearnedReference, where: str) -> dict[str, Any]:
+def learned_reference_to_dict(learned: LearnedReference, where: str | None = None) -> dict[str, Any]:
     """Return learned words of reference as plain data.
 
     Parameters
@@ -215,7 +217,7 @@ def learned_reference_to_dict(learned: LearnedReference, where: str) -> dict[str
     learned
         Result of learning the weights of words of reference.
     where
-        File that the weights were written to.
+        File that the weights were written to; None if unknown.
 
     Returns
     -------
@@ -227,10 +229,29 @@ def learned_reference_to_dict(learned: LearnedReference, where: str) -> dict[str
         "descriptions": learned.descriptions,
         "right_before": learned.right[0],
         "right_after": learned.right[1],
+        "converged": learned.converged,
+        "steps": learned.steps,
         "changed": dict(learned.changed),
         "left_out": list(learned.left_out),
         "written": where,
     }
+
+
+def learned_reference_rows(learned: LearnedReference) -> Iterator[dict[str, Any]]:
+    """Yield a row for each word or feature family whose weights changed.
+
+    Parameters
+    ----------
+    learned
+        Result of learning the weights of words of reference.
+
+    Yields
+    ------
+    dict
+        ``word``, and the largest ``change`` of a weight of it.
+    """
+    for word, change in learned.changed.items():
+        yield {"word": word, "change": change}
 
 
 def _members(mask: int) -> list[str]:

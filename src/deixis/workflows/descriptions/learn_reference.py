@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import Answer, count
+from deixis.deadline import Deadline
 from deixis.errors import DeixisError, OntologyError
 from deixis.ontology.strict_json import parse_json
 from deixis.perception.scene import Scene
-from deixis.reasoning.errors import DescriptionError, SettingError
+from deixis.reasoning.errors import DescriptionError, SettingError, require_time_limit
 from deixis.text_files import read_text, replace_text
 from deixis.workflows.descriptions.refer import (
     line_of_batch,
@@ -37,44 +40,79 @@ CHANGED = 0.02
 """Least change of a weight for which its word is listed as learned."""
 
 
-@dataclass(frozen=True, eq=False)
-class LearnedReference:
+@dataclass(frozen=True, eq=False, repr=False)
+class LearnedReference(Answer):
     """Weights of reference after learning.
 
-    ``descriptions`` is the number of descriptions that taught something; ``left_out`` has a line for each other one,
-    with the reason. ``changed`` has the largest change of a weight of each word or feature family that changed, the
-    largest first. ``right`` holds how many of the descriptions the model answers right before and after.
+    Attributes
+    ----------
+    model
+        The model with the learned weights.
+    descriptions
+        Number of descriptions that taught something.
+    changed
+        Largest change of a weight of each word or feature family that changed, the largest first.
+    right
+        Number of the descriptions that the model answers right before and after learning.
+    steps
+        Number of steps of the fit.
+    converged
+        Whether the fit converged within its steps and the time limit.
+    left_out
+        A line for each description that taught nothing, with the reason.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import example
+    >>> said = {"text": "the bin near the door", "scene": str(example("study.scene.json")), "target": "o14"}
+    >>> learned = deixis.learn_reference([json.dumps(said)], strength=0.3)
+    >>> learned.right, learned.converged
+    ((0, 1), True)
     """
 
     model: Model
     descriptions: int
     changed: Mapping[str, float]
     right: tuple[int, int]
+    steps: int
+    converged: bool
     left_out: tuple[str, ...] = ()
+
+    def summary(self) -> str:
+        """Return the answer in a few words, for ``repr``.
+
+        Returns
+        -------
+        str
+            The summary, without the name of the type.
+        """
+        before, after = self.right
+        return f"{count(self.descriptions, 'description')}, {before} right before and {after} after"
 
 
 def learn_reference(
-    lines: Iterable[str],
-    folder: Path,
+    descriptions: str | Path | Iterable[str],
     strength: float = 3.0,
     prior: Model | None = None,
     progress: Callable[[int, int], None] | None = None,
+    time_limit: float = math.inf,
 ) -> LearnedReference:
     """Fit the words of descriptions, with their frames, to descriptions whose target is known.
 
     Parameters
     ----------
-    lines
-        Lines of JSON with the keys ``text``, ``scene`` (a file, relative to ``folder``) and ``target`` (the id of the
-        object that is meant).
-    folder
-        Folder of the lines.
+    descriptions
+        File of lines of JSON with the keys ``text``, ``scene`` (a file, relative to the folder of the lines) and
+        ``target`` (the id of the object that is meant); or such lines, with scenes relative to the current folder.
     strength
         Weight of the prior, above 0: the cost in nats of changing one weight by 1.
     prior
         Model from which the fit starts; the shipped one by default.
     progress
         Called after each step of the fit with the number of steps done and their maximum.
+    time_limit
+        Seconds after which the fit ends with the weights so far.
 
     Returns
     -------
@@ -86,19 +124,32 @@ def learn_reference(
     DescriptionError
         If no line teaches anything.
     SettingError
-        If ``strength`` is not above 0.
+        If ``strength`` or ``time_limit`` is not above 0.
 
     Notes
     -----
     Penalised maximum likelihood, as for the shipped weights
     (:func:`deixis.reasoning.grounding.reference.model.fitting.fit`). Weights of words that no description has stay.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import example
+    >>> said = {"text": "the bin near the door", "scene": str(example("study.scene.json")), "target": "o14"}
+    >>> deixis.learn_reference([json.dumps(said)], strength=0.3)
+    <LearnedReference 1 description, 0 right before and 1 after>
     """
     from deixis.ontology.tbox import default_ontology
     from deixis.reasoning.grounding.reference.model.fitting import fit, initial_weights
 
     if not 0 < strength < np.inf:
         raise SettingError(f"the strength of the shipped weights must be above 0, got {strength:g}")
-    examples, left_out = _examples(lines, folder)
+    require_time_limit(time_limit)
+    deadline = Deadline.after(time_limit)
+    if isinstance(descriptions, (str, Path)):
+        examples, left_out = _examples(read_text(descriptions).split("\n"), Path(descriptions).parent)
+    else:
+        examples, left_out = _examples(descriptions, Path())
     before = prior or shipped_model()
     if not examples:
         more = f"; and {len(left_out) - 1} more lines" if len(left_out) > 1 else ""
@@ -106,11 +157,12 @@ def learn_reference(
         raise DescriptionError(f"nothing to learn; {why}{more}")
     unset = {name: np.zeros_like(values) for name, values in initial_weights(default_ontology().colours).items()}
     start = replace(before, weights={**unset, **before.weights})
-    learned = replace(start, weights=fit(start, examples, strength, ITERATIONS, progress))
-    steps = {name: float(np.abs(values - start.weights[name]).max()) for name, values in learned.weights.items()}
-    changed = {name: step for name, step in sorted(steps.items(), key=lambda one: -one[1]) if step >= CHANGED}
+    fitted = fit(start, examples, strength, ITERATIONS, progress, deadline)
+    learned = replace(start, weights=fitted.weights)
+    changes = {name: float(np.abs(values - start.weights[name]).max()) for name, values in learned.weights.items()}
+    changed = {name: change for name, change in sorted(changes.items(), key=lambda one: -one[1]) if change >= CHANGED}
     right = (_right(before, examples), _right(learned, examples))
-    return LearnedReference(learned, len(examples), changed, right, tuple(left_out))
+    return LearnedReference(learned, len(examples), changed, right, fitted.steps, fitted.converged, tuple(left_out))
 
 
 def _examples(lines: Iterable[str], folder: Path) -> tuple[list[Example], list[str]]:

@@ -12,6 +12,7 @@ from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError, UnknownTermError
 from deixis.grammar.formats.fluents import FluentFile, bounds_to_json, format_fluents, parse_fluents
@@ -553,12 +554,36 @@ def _box(text: str) -> tuple[float, ...] | None:
     return tuple(corners.ravel().tolist()) if fits else None
 
 
-@dataclass(frozen=True)
-class Consolidation:
-    """Lessons learned from experiences by their names, and why other experiences taught nothing."""
+@dataclass(frozen=True, repr=False)
+class Consolidation(Answer):
+    """Lessons learned from experiences, and why other experiences taught nothing.
+
+    Attributes
+    ----------
+    lessons
+        Id of the lesson of each experience that taught one, by the name of the experience.
+    left_out
+        Reason why each other experience taught nothing, by its name.
+
+    Examples
+    --------
+    >>> Consolidation({"dinner": "dinner-1"}, {"walk": "nothing was said in it"})
+    <Consolidation 1 lesson, 1 experience left out>
+    """
 
     lessons: dict[str, str]
     left_out: dict[str, str]
+
+    def summary(self) -> str:
+        """Return the answer in a few words, for ``repr``.
+
+        Returns
+        -------
+        str
+            The summary, without the name of the type.
+        """
+        left_out = f", {count(len(self.left_out), 'experience')} left out" if self.left_out else ""
+        return f"{count(len(self.lessons), 'lesson')}{left_out}"
 
 
 def named_layout(text: str) -> tuple[str | None, str]:

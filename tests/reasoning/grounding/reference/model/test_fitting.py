@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.reference.features.nouns import Nouns
 from deixis.reasoning.grounding.reference.features.room import Room
@@ -21,18 +22,19 @@ def room(seed: int) -> Room:
     return Room.of(tuple("abcde"), boxes, ("chair",) * 4 + ("door",))
 
 
-def test_a_fit_learns_that_near_means_far() -> None:
-    """Fit *near* to examples whose target is the farthest chair from the door."""
+def far_chairs(number: int) -> tuple[Query, list[Example], Model]:
+    """Return examples of *near* whose target is the farthest chair from the door, and a model to start from."""
     query = Query(Description("chair", relations=(Relation("near", (Description("door"),)),)))
-    examples = []
-    for seed in range(30):
-        seen = room(seed)
-        examples.append(Example(query, seen, int(np.argmax(seen.distances[:4, 4]))))
-    start = Model(
-        initial_weights(COLOURS), Lexis(NOUNS.features, NOUNS.similarity, NOUNS.called, NOUNS.number, COLOURS)
-    )
+    rooms = [room(seed) for seed in range(number)]
+    examples = [Example(query, seen, int(np.argmax(seen.distances[:4, 4]))) for seen in rooms]
+    lexis = Lexis(NOUNS.features, NOUNS.similarity, NOUNS.called, NOUNS.number, COLOURS)
+    return query, examples, Model(initial_weights(COLOURS), lexis)
+
+
+def test_a_fit_learns_that_near_means_far() -> None:
+    query, examples, start = far_chairs(30)
     steps: list[tuple[int, int]] = []
-    weights = fit(start, examples[:20], 0.1, 15, lambda done, total: steps.append((done, total)))
+    weights = fit(start, examples[:20], 0.1, 15, lambda done, total: steps.append((done, total))).weights
     assert steps == [(done, 15) for done in range(1, len(steps) + 1)] and len(steps) > 3
     fitted = Model(weights, start.lexis)
 
@@ -41,6 +43,13 @@ def test_a_fit_learns_that_near_means_far() -> None:
 
     assert right(start) <= 2
     assert right(fitted) >= 8
+
+
+def test_at_the_deadline_a_fit_keeps_the_weights_so_far() -> None:
+    _, examples, start = far_chairs(2)
+    found = fit(start, examples, 0.1, 15, deadline=Deadline.after(0.0))
+    assert (found.steps, found.converged) == (0, False)
+    assert all((found.weights[name] == values).all() for name, values in start.weights.items())
 
 
 def test_initial_weights_have_a_name_for_each_number() -> None:
