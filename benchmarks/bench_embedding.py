@@ -1,4 +1,4 @@
-"""Measure an embedding learnt from procedural shapes, beside its own descriptors, on held-out kinds and meshes.
+"""Measure an embedding learned from procedural shapes, beside its own descriptors, on held-out kinds and meshes.
 
 A kind is a family of solids (vessels, closed solids, sheets, stemmed vessels, two solids joined) with parameters drawn
 once; things of a kind vary all of them. The embedding is the linear map of a discriminant analysis (Fisher 1936) over

@@ -75,7 +75,7 @@ def read_activity(text: str) -> list[list[DescribedItem]]:
     Returns
     -------
     list of list of DescribedItem
-        Groups of things; nothing is said of the order within a group.
+        Groups of things; nothing is said about the order within a group.
 
     Raises
     ------

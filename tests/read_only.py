@@ -1,4 +1,4 @@
-"""Folders that cannot be written, also for root: by what the system says of them."""
+"""Folders that cannot be written, also for root: by what the system says about them."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ def import_episodes(board: Blackboard, text: str, file: str) -> int:
 
 
 def import_file(memory: Path, file: Path) -> int:
-    """Add the fluents of a file to the blackboard of a memory, which is made with the origin of the file if need be.
+    """Add the fluents of a file to the blackboard of a memory; a new one gets the origin of the file.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 ANONYMOUS = "user"
-"""Name of a teacher who is not named."""
+"""Name that is stored for a teacher whose name is not given."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -87,7 +87,7 @@ class Groups:
         return self._by_word.get(_singular(word))
 
     def known_as(self, noun: str) -> tuple[Kind | None, str]:
-        """Return how the groups know a thing.
+        """Return the kind of a noun phrase, or the ending of it that a group lists.
 
         The longest ending counts: a *paper plate* is more than a plate.
 

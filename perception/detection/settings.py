@@ -220,7 +220,7 @@ class HeightSettings(_Thresholds):
     """Minimum noise in metres at one metre from the sensor, because tables are not perfectly flat. Tested by
     test_a_strip_of_a_few_millimetres_is_kept_without_the_table[0.0]."""
     min_noise_distance: float = 0.3
-    """Metres from the sensor below which noise does not decrease any more. No scene or test tried depends on it."""
+    """Metres from the sensor below which noise no longer decreases. No scene or test tried depends on it."""
     object_noise_ratio: float = 1.5
     """Minimum height of an object relative to the threshold for a point above the table, so that a ripple of noise is
     not an object. At a tenth of it, mosd 44 has two objects more at half resolution; at three times it, mosd 54 has one

@@ -47,7 +47,7 @@ RANKS = {"1 from left": "left", "-1 from right": "left", "1 from right": "right"
 """Relation of what has an extreme rank to each of the others."""
 
 AXES = ("left", "right", "top", "bottom")
-"""Relations of which one between two things holds of what is between them as well."""
+"""Relations that, if they hold between two things, also hold for a thing between the two."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -215,7 +215,7 @@ class PairBlocks:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Pairs of n boxes (n, 2, d) that lie among many more, a block at a time: how crowded they are is known about.
+    """Pairs of n boxes (n, 2, d) among many more, one block at a time; their crowding is approximate.
 
     ``distances`` (n, r), in rising order, are those from each box to r others that are spread evenly over the scene:
     the share of them that is nearer stands for that of all. The work grows with n r, and not with the square of all.
@@ -310,11 +310,11 @@ class Surroundings:
 
 
 SPREAD = 256
-"""Most things that stand for all of a scene in how crowded a pair is: a share is off by less than a hundredth."""
+"""Maximum size of the sample of things from which the crowding of a pair is estimated, with an error below 0.01."""
 
 
 def _spread_evenly(boxes: Array) -> Array:
-    """Return at most ``SPREAD`` of the boxes: of strips along y, sorted along x, every so many."""
+    """Return at most ``SPREAD`` of the boxes: of strips along y, sorted along x, at regular intervals."""
     if len(boxes) <= SPREAD:
         return boxes
     centres = boxes.mean(axis=1)

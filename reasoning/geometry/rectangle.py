@@ -394,7 +394,7 @@ def cross_relations(
 def _related(
     boxes: NDArray[np.float64], ranks: NDArray[np.int64], rows: slice, vocabulary: Relations, tolerance: float
 ) -> tuple[list[NDArray[np.int8]], NDArray[np.int8]]:
-    """Return the same of some boxes (rows) with all; the name of each with itself is -1."""
+    """Return the relations of some boxes (rows) to all boxes; the name of a box with itself is -1."""
     codes, names = cross_relations(boxes[rows], boxes, (ranks[rows], ranks), vocabulary, tolerance)
     own = np.arange(len(boxes))[rows]
     names[np.arange(len(own)), own] = -1

@@ -43,7 +43,7 @@ class Teaching:
 
 
 class End(Enum):
-    """Reason for the end of a course: all categories were learnt, patience ran out, or a category had no view left."""
+    """Reason for the end of a course: all categories were learned, patience ran out, or a category had no view left."""
 
     LEARNT = "all learnt"
     FRUITLESS = "no progress"

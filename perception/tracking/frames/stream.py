@@ -165,7 +165,7 @@ class FolderSource:
                 time.sleep(0.05)
 
     def _settled(self, seen: Collection[Path]) -> list[tuple[Path, float]]:
-        """Return the files that have not been seen and are not being written any more, with the times of writing."""
+        """Return the files that have not been seen and are no longer being written, with the times of writing."""
         now, known = time.time(), set(seen)
         dates = [(file, _written_at(file)) for file in self._files() if file not in known]
         return [(file, at) for file, at in dates if at is not None and abs(now - at) > SETTLE_SECONDS]

@@ -78,8 +78,8 @@ class Reference:
     def carry(self, before: TableView, now: TableView, gap: float) -> None:
         """Carry all points to the view of a camera that has moved.
 
-        A point keeps its place in the table's frame: it lies beside the middle of its new pixel. Points that are not in
-        the view any more, or behind others, are forgotten.
+        A point keeps its place in the table's frame: it lies beside the middle of its new pixel. Points that are no
+        longer in view, or are behind others, are forgotten.
 
         Parameters
         ----------

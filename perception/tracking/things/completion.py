@@ -31,7 +31,7 @@ MIN_HEIGHT, MIN_MEAN_HEIGHT = 0.0015, 0.0005
 """Least heights in metres above the table: of a pixel of a missing part without its colour, and of the whole part."""
 
 MIN_PART, MIN_APART = 12, 4
-"""Least numbers of pixels of a part: all, and those that do not touch what is known of the thing."""
+"""Least numbers of pixels of a part: all, and those that do not touch what is known about the thing."""
 
 MAX_CARRIED_VIEWS = 3
 """Number of views from which the missing parts of a thing that lies on another one are looked for."""
@@ -336,7 +336,7 @@ class FlatThing:
 
     @property
     def is_cut_off(self) -> bool:
-        """True if something before the thing hides where it may go on, so that another view may show its other end."""
+        """True if something may hide the continuation of the thing, so that another view may show its other end."""
         from scipy.ndimage import binary_dilation
 
         return self.is_seen and bool((binary_dilation(self._seed, AROUND, iterations=2) & self._hiding).any())
@@ -346,9 +346,8 @@ class FlatThing:
 
         Pixels that are higher than the rest of the noise, or of another colour than the table, are the thing's if they
         are connected with it and are, as a whole, higher than the table or of the thing's colour. Those of a plate that
-        a thing lies on must have the thing's colour and lie in its line. A long thing goes on
-        behind things that stand before it: pixels of its colour on their other side are its own if they lie in its
-        line.
+        a thing lies on must have the thing's colour and lie in its line. A long thing continues behind things that
+        stand before it: pixels of its colour on their other side are its own if they lie in its line.
 
         Returns
         -------

@@ -128,7 +128,7 @@ class Pipeline:
     completed_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it was last completed."""
     cut_off: bool = field(default=False, init=False)
-    """True if something hid where it may go on when it was last completed."""
+    """True if something may have hidden its continuation when it was last completed."""
     views: int = field(default=0, init=False)
     """Number of views from which it was completed during its present rest."""
     revealed: bool = field(default=False, init=False)

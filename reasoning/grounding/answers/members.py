@@ -1,4 +1,4 @@
-"""Find the members of groups of unknown number: all perceived things that fit what is said of a group.
+"""Find the members of groups of unknown number: all perceived things that fit what is said about a group.
 
 The engines match a group (*the chairs*) to one thing, which stands for it. Its members are found afterwards, with
 everything else at its match: a thing is a member if its label, size and colour fit the noun about as well as those of

@@ -310,7 +310,7 @@ def take_out(
 def _examples(scenes: Iterable[SaidPairs]) -> dict[str, float]:
     """Return the weight of the stated words of each family with at least one; words without a model have none.
 
-    Nor have *facing* and its like where no orientation is known.
+    Words such as *facing* have none where no orientation is known.
     """
     weights: dict[str, float] = {}
     for scene in scenes:

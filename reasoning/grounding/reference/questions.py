@@ -45,7 +45,7 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True, enoug
     labelled
         Whether questions may use the labels of the scene.
     enough
-        Probability of an object from which on no more questions are asked.
+        Probability of an object at which no more questions are asked.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def fewest_questions(shares: Array, enough: float = DECIDED) -> float:
     shares
         Probabilities of the objects, shape (n,).
     enough
-        Probability of an object from which on no more questions are asked.
+        Probability of an object at which no more questions are asked.
 
     Returns
     -------

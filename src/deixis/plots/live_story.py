@@ -45,7 +45,7 @@ def write_story(robot: LiveRobot, folder: str | Path) -> Path:
     robot
         The robot at the end of its story.
     folder
-        The folder, which is made if need be.
+        The folder, which is made if it does not exist.
 
     Returns
     -------

@@ -207,7 +207,7 @@ def _measured(figure: Figure, text: str) -> tuple[float, float]:
 
 
 def _places(outline: Box, width: float, height: float, most: float) -> Iterator[NamePlace]:
-    """Yield places for a name: on its thing, at several heights, level or upright; then around it, ever farther."""
+    """Yield places for a name: on its thing, at several heights, level or upright; then around it, nearest first."""
 
     def around(x: float, y: float, width: float, height: float) -> Box:
         return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)

@@ -1,6 +1,6 @@
 """The robot's fluents on the blackboard: what it saw, what people told and showed it, and what it concluded.
 
-Each fluent says how it became known: seen by the robot, shown or said by a person, or inferred. What was said of an
+Each fluent says how it became known: seen by the robot, shown or said by a person, or inferred. What was said about an
 expected object holds until the object is seen (``sameAs`` then names the thing) or contradicted.
 """
 
@@ -125,7 +125,7 @@ class Diary:
             self.board.write(*changes)
 
     def refresh(self) -> None:
-        """Forget the fluents that the blackboard does not hold any more, because they were taken back."""
+        """Forget the fluents that were taken back from the blackboard."""
         held = {each.id for each in self.board.now()}
         self._found = {statement: each for statement, each in self._found.items() if each.id in held}
         self._places = {id: each for id, each in self._places.items() if each.id in held}
@@ -301,7 +301,7 @@ class Diary:
     # ---- expected objects
 
     def expects(self, objects: Collection[ExpectedObject], landmarks: Mapping[str, str]) -> None:
-        """Write what a sentence said of objects that are expected.
+        """Write what a sentence said about objects that are expected.
 
         Parameters
         ----------

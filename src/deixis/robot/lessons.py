@@ -187,7 +187,7 @@ class TableLesson:
         Returns
         -------
         TableLesson
-            The lesson with the roles that are left. A role whose thing is not known any more waits again.
+            The lesson with the roles that are left. A role whose thing is no longer known waits again.
         """
         if table is None:
             return replace(self, settled={}, waiting={})

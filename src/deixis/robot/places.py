@@ -90,7 +90,7 @@ def places_of(script: Script, role: str, scene: Scene, meaning: Meaning) -> Plac
     Returns
     -------
     Places or None
-        The places; None if the table has no things, so that nothing is known of its extent, or more than
+        The places; None if the table has no things, so that nothing is known about its extent, or more than
         ``MAX_THINGS``.
     """
     if not 0 < len(scene.objects) <= MAX_THINGS:

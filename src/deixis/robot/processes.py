@@ -161,7 +161,7 @@ class Hub:
 
 
 class ProcessRunner(Runner):
-    """A module in a process, which is started again if it dies, until :data:`MAX_STARTS` starts were in vain."""
+    """A module in a process, which is started again if it dies, until :data:`MAX_STARTS` starts have failed."""
 
     def __init__(self, name: str, where: dict[str, Any], position: int, report: Callable[[str], None]) -> None:
         self._name, self._where, self._report = name, where, report

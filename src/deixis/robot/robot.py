@@ -619,7 +619,7 @@ class Robot(Closing):
         return tuple(self.expected[len(known) :])
 
     def _landmarks(self, script: Script) -> dict[str, str]:
-        """Return the ids on the blackboard of the objects of a sentence that are surely seen."""
+        """Return the ids on the blackboard of the objects of a sentence that have certainly been seen."""
         if self._scene is None or not script.objects:
             return {}
         found = self.session.ground(script, self.knowledge().recognised(self.scene), time_limit=GROUNDING_TIME_LIMIT)

@@ -19,7 +19,7 @@ from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 Array = NDArray[np.float64]
 
 LIKELY = 0.5
-"""Probability from which on a word is said of a pair."""
+"""Minimum probability at which a word is said about a pair."""
 
 PASSIVE = frozenset(
     {"around", "ringed_by", "leaned_on_by", "crossed_by", "stacked_under", "faced_by", "pointed_at_by", "less_long"}

@@ -526,7 +526,7 @@ def literal_degree(
     vocabulary: Relations,
     implied: float = 0.5,
 ) -> Array:
-    """Return crisp degrees by the exact relation of each pair : 1, ``implied``, or 0.
+    """Return crisp degrees by the exact relation of each pair: 1, ``implied``, or 0.
 
     Parameters
     ----------

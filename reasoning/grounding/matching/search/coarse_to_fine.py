@@ -1,4 +1,4 @@
-"""Belief propagation from coarse to fine: messages about groups of things, then about ever smaller groups.
+"""Belief propagation from coarse to fine: messages about groups of things, then about smaller and smaller groups.
 
 A round of dense belief propagation costs the number of facts times the square of the number of things. Things that lie
 near each other have similar rows in the tables of all facts, so that messages about them are similar too. Here the

@@ -29,7 +29,7 @@ NUMBER_FEATURES = ("plural_of_plural", "plural_of_singular", "singular_of_plural
 """Names of the features of the number of a noun and that of a label."""
 
 ALIKE = 0.75
-"""Ratio of matching letters from which on two words count as spellings of one."""
+"""Minimum ratio of matching letters at which two words count as spellings of one."""
 
 
 NAMED = 0.06
@@ -43,7 +43,7 @@ NAMED_WEIGHT = 20.0
 """Number of objects with known classes that count as much as this prior."""
 
 CALLED = 0.85
-"""Fit of a noun and a label from which on the noun names the class."""
+"""Minimum fit of a noun to a label at which the noun names the class."""
 
 ALIKE_SIZES = 0.25
 """Standard deviation of the logarithms of the sides of objects of one class in one scene."""

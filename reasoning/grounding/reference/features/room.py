@@ -17,7 +17,7 @@ VIEWERS = 8
 """Number of directions, evenly spaced, in which an unknown viewer may look."""
 
 SURROUNDINGS = 0.5
-"""Share of the extents of a scene from which on an object counts as part of its surroundings, such as a floor."""
+"""Minimum share of the extents of a scene at which an object counts as part of its surroundings, such as a floor."""
 
 
 @dataclass(frozen=True, eq=False)

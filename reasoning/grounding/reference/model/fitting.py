@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Example:
-    """A query about a room, and the index of the object that it was said of."""
+    """A query about a room, and the index of the object that it was said about."""
 
     query: Query
     room: Room

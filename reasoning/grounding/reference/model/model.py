@@ -73,7 +73,7 @@ COUNTED_GAP = 0.4
 """Greatest distance of a counted landmark over the scale of the scene."""
 
 LIKELY = 0.5
-"""Probability from which on an object counts as one of the class that a noun names."""
+"""Minimum probability at which an object counts as one of the class that a noun names."""
 
 SIZE_TOLERANCE = 1.0
 """Sum of the logarithms by which the sides of an object without a label may lie outside the usual ones of a noun."""

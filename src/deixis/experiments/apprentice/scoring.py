@@ -1,4 +1,4 @@
-"""Score what the robot said of tables against the truth, by stated rules.
+"""Score what the robot said about tables against the truth, by stated rules.
 
 A detected thing is a true thing if most of its points are of that thing and the two share at least half of their points
 (intersection over union). A true thing is named right if it was detected and has its name without a number; extra
@@ -110,7 +110,7 @@ def true_things(look: Simulation, scene: Scene) -> dict[str, str]:
 
 
 def score(look: Look, table: Tampered, layout: str, things: Mapping[str, str], taught: Iterable[str]) -> TableScore:
-    """Score what the robot says of a table.
+    """Score what the robot says about a table.
 
     Parameters
     ----------

@@ -107,7 +107,7 @@ def _head(found: OpenEnded) -> Iterator[str]:
         yield from wrap(repr(describer), 116, initial_indent="  ", subsequent_indent="    ")
     yield from (f"  skipped: {note}" for note in found.skipped)
     yield ""
-    yield "Means and standard deviations over orders. QCI: question and correction iterations; ALC: categories learnt;"
+    yield "Means and standard deviations over orders. QCI: question and correction iterations; ALC: categories learned;"
     yield "AIC: instances stored per category; GCA: share of right answers; APA: mean accuracy in the teacher's window;"
     yield "AUROC: how well the learner's doubt separates views of the next category from those of known categories;"
     yield "new: final share right on things never taught; least: the least GCA; all: orders that ended with all."

@@ -96,7 +96,7 @@ EMPTY = frozenset(
         "target",
     }
 )
-"""Nouns that say nothing of the kind."""
+"""Nouns that say nothing about the kind."""
 
 ANYTHING = frozenset({"thing", "object", "item"})
 """Nouns that every object fits; the other ones of EMPTY stand for a noun said before."""
@@ -150,7 +150,7 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
     """Return the query of the sentences that describe one object.
 
     The first noun of the text names the object, unless a later sentence picks another one (*there is a shelf between
-    two doors; it is the door on the left*): the first one is then what *it* stands for. What is said of *it*, *this
+    two doors; it is the door on the left*): the first one is then what *it* stands for. What is said about *it*, *this
     one*, or of the same noun belongs to the object; a clause about something else that mentions it is a relation of it.
 
     Parameters
@@ -553,7 +553,7 @@ def _surface(relation: str, noun: str, positive: bool) -> list[Property]:
 
 
 def _on_surface(surface: Description, positive: bool) -> list[Relation]:
-    """Return what is said of a surface as relations of what is on it: *the shoes on the floor by the door*."""
+    """Return what is said about a surface as relations of what is on it: *the shoes on the floor by the door*."""
     return [one for one in surface.relations if one.positive and not one.inverted] if positive else []
 
 

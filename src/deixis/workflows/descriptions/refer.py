@@ -62,7 +62,7 @@ def refer(
     oracle
         Id of the object that is meant, which answers the questions in place of ``ask``, for experiments.
     until
-        Probability from which on no more questions are asked, above 0 and at most 0.95. Fewer questions leave more
+        Probability at which no more questions are asked, above 0 and at most 0.95. Fewer questions leave more
         answers wrong; an answer below 0.95 stays undecided.
     model
         Model with other weights than the shipped ones

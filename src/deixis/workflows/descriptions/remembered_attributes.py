@@ -42,7 +42,7 @@ def remember_sentence(board: Blackboard, text: str, scene: Scene, target: str, b
     text
         Sentence such as *the blick one*.
     scene
-        The scene that it was said of.
+        The scene that it was said about.
     target
         Id of the thing that was meant.
     by

@@ -662,7 +662,7 @@ def _learned(
 
 
 def _marked(board: _Episodes, experience: Experience, by: str, lessons: Sequence[Lesson]) -> Part:
-    """Return what the blackboard says of the lesson of an experience, as a part of its write."""
+    """Return what the blackboard says about the lesson of an experience, as a part of its write."""
     mark = _mark(board, experience, lessons[0].id, by)
     return board.part(mark, by=by) if isinstance(board, Blackboard) else board.part(mark)
 

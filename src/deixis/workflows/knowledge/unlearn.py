@@ -214,7 +214,7 @@ def _episodes(board: Blackboard, lessons: Sequence[str], chosen: _Chosen, others
     """Yield what changes on the blackboard.
 
     The fluents go that a person stated and that are taken back, and those of the same events and lessons. Experiences
-    stay, and do not name the lessons any more.
+    stay, and no longer name the lessons.
     """
     known = board.holding()
     yield from _shortened(known, chosen, board.moment)

@@ -1,4 +1,4 @@
-"""Lays a script with simulated tableware: boxes that satisfy it, filled with things of its kinds."""
+"""Lay a script with simulated tableware: boxes that satisfy it, filled with things of its kinds."""
 
 from __future__ import annotations
 

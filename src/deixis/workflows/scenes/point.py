@@ -131,7 +131,7 @@ def point(
     said
         Utterances, or a file of them (``.said.jsonl``), on the clock of the skeletons.
     sure
-        Probability from which on a thing is decided.
+        Minimum probability of a decided thing.
 
     Returns
     -------
@@ -235,7 +235,7 @@ def pointed_label(
     scene
         The things.
     sure
-        Probability from which on a thing is decided.
+        Minimum probability of a decided thing.
 
     Returns
     -------
