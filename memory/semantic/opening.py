@@ -170,19 +170,19 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
     MemoryFormatError
         If there is no memory, or its files are invalid.
     MemoryWriteError
-        If the folder cannot be made or written.
+        If the folder cannot be created or written.
     """
     begin_opening(folder)
     remove_stale()
     state = files.inspect(folder)
     if state in (FolderState.ABSENT, FolderState.EMPTY) and not create:
-        raise MemoryFormatError(f"{_why_none(folder, state)}; learn something into it first, or name another folder")
+        raise MemoryFormatError(f"{_why_none(folder, state)}; learn or teach something first, or name another folder")
     made = state is FolderState.ABSENT
     if made:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
+            raise MemoryWriteError(f"the folder {folder} cannot be created: {error.strerror}") from error
     try:
         try:
             lock = OwnerLock.acquire(folder)

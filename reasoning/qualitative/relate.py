@@ -219,7 +219,8 @@ class Related(Answer):
             return range(len(self.ids))
         if name not in self.ids:
             hint = nearest(name, self.ids)
-            raise UnknownTermError(f"nothing here is called '{name}'" + (f"; did you mean '{hint}'?" if hint else ""))
+            advice = f"did you mean '{hint}'?" if hint else f"there are: {', '.join(self.ids) or 'none'}"
+            raise UnknownTermError(f"there is no object '{name}'; {advice}")
         place = self.ids.index(name)
         return range(place, place + 1)
 

@@ -91,7 +91,7 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
     Raises
     ------
     DeixisError
-        Where a file is a folder, is among the files to read, is named twice, or its folder cannot be made.
+        Where a file is a folder, is among the files to read, is named twice, or its folder cannot be created.
     """
     from deixis.errors import DeixisError
 
@@ -107,7 +107,7 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise DeixisError(f"{file}: its folder cannot be made: {error.strerror}") from error
+            raise DeixisError(f"{file}: its folder cannot be created: {error.strerror}") from error
 
 
 def require_plot(file: Path | None) -> None:

@@ -295,7 +295,7 @@ def made(factory: str, base: type[Made], **settings: Any) -> Made:
     try:
         found = getattr(import_module(place), name)(**settings)
     except (ImportError, AttributeError, TypeError, ValueError) as error:
-        raise ModuleError(f"the module '{factory}' cannot be made: {error}") from error
+        raise ModuleError(f"the module '{factory}' cannot be loaded: {error}") from error
     if not isinstance(found, base):
         raise ModuleError(f"'{factory}' must be a {base.__name__}, got {type(found).__name__}")
     return found

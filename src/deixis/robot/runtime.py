@@ -33,7 +33,7 @@ class Runtime(Closing):
     Raises
     ------
     ModuleError
-        If two modules have one name, or one cannot be made.
+        If two modules have one name, or one cannot be loaded.
     """
 
     def __init__(

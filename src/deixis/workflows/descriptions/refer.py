@@ -104,7 +104,8 @@ def refer(
     if oracle is not None:
         if oracle not in seen.ids:
             raise DescriptionError(
-                f"{seen.file}: there is no object '{oracle}' that could answer; give an id of the scene"
+                f"{seen.file}: `oracle` must be an object of the scene, got '{oracle}'; "
+                f"there are: {', '.join(seen.ids)}"
             )
         ask = _oracle(oracle)
     if not seen.objects:

@@ -340,5 +340,5 @@ def require_names(inference: Inference, fact: Fact, name: str) -> None:
     for thing in (fact.subject, fact.object):
         if thing not in nodes:
             hint = nearest(thing, nodes)
-            suggestion = f"; did you mean '{hint}'?" if hint else ""
-            raise UnknownTermError(f"{name}: the script has no object '{thing}'{suggestion}")
+            advice = f"did you mean '{hint}'?" if hint else f"there are: {', '.join(nodes)}"
+            raise UnknownTermError(f"{name}: the script has no object '{thing}'; {advice}")
