@@ -265,7 +265,7 @@ def _of_list(data: Any) -> EpisodicFluent:
     }
     for name, value in texts.items():
         if not isinstance(value, str) and not (value is None and name in ("object", "event")):
-            raise ImportFormatError(f"its {name} must be a text, got {json_type(value)}")
+            raise ImportFormatError(f"its {name} must be a string, got {json_type(value)}")
     origins = [each.value for each in Origin]
     if origin not in origins:
         raise ImportFormatError(f"its origin must be one of {', '.join(origins)}, got {json.dumps(origin):.60}")

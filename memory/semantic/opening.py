@@ -136,7 +136,7 @@ def open_store(folder: Path) -> ox.Store:
     except (OSError, RuntimeError) as error:
         if "lock hold by current process" in str(error):
             raise MemoryBusyError(
-                f"the memory at {folder} is still read by this process: let go of what iterates over it, then try again"
+                f"the memory at {folder} is still read by this process: release the iterators over it, then try again"
             ) from error
         raise MemoryWriteError(f"the memory at {folder} could not be opened: {files.one_line(error)}") from error
 

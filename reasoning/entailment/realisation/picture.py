@@ -206,7 +206,7 @@ class _Task:
     def _relaxed(self, soft: Sequence[Demand], deadline: Deadline) -> Relaxed | None:
         found = relaxed(self.points, self.base, [*self.firm, *self.sizes], soft, deadline)
         if isinstance(found, tuple):
-            raise AssertionError("the firm demands were satisfiable before, and are not any more")
+            raise AssertionError("the firm demands were satisfiable before, and no longer are")
         return found
 
     def _composed(self, best: Relaxed, apart: Sequence[Demand], deadline: Deadline) -> NDArray[np.int64]:

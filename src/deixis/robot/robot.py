@@ -545,7 +545,7 @@ class Robot(Closing):
             If it describes a layout before the robot has seen a table.
         """
         if isinstance(text, str) and not text.strip():
-            raise RobotError("`text` must say something, got blank text; describe how the table is laid")
+            raise RobotError("`text` must describe a layout, got a blank text; describe how the table is laid")
         if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
             return self._expect_objects(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)

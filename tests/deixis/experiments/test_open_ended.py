@@ -146,7 +146,7 @@ def test_a_damaged_file_is_made_again_and_a_bad_folder_reported(tmp_path: Path) 
     (file,) = tmp_path.iterdir()
     file.write_bytes(file.read_bytes()[:-100])
     assert len(cached_views(tmp_path, "key", build).views) == 1
-    with pytest.raises(CacheError, match=r"views-.*npz: views cannot be kept here"):
+    with pytest.raises(CacheError, match=r"views-.*npz: views cannot be stored here"):
         cached_views(file, "key", build)
 
 

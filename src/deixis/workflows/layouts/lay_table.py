@@ -389,7 +389,7 @@ def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:
     spoken_of = [i for i, found in enumerate(plan.tables) if found]
     if len(spoken_of) > 1:
         names = " and ".join(plan.graph.nodes[i] for i in spoken_of[:2])
-        raise SimulationError(f"{names} are tables, and one table is simulated; leave one of them out")
+        raise SimulationError(f"{names} are tables, and only one table can be simulated; leave one of them out")
     if not spoken_of:
         return top_under(laid.things, colour=colour)
     low, high = plan.boxes[spoken_of[0]]

@@ -265,7 +265,7 @@ def test_nothing_is_left_behind(memory: SemanticMemory) -> None:
 
 def test_prepared_queries_are_refused(filled: SemanticMemory) -> None:
     """rdflib would evaluate them in this process, without any limit."""
-    with pytest.raises(QueryError, match="must be a text, got a prepared query"):
+    with pytest.raises(QueryError, match="must be a string, got a prepared query"):
         filled.dataset().query(rdflib.plugins.sparql.prepareQuery("ASK { ?s ?p ?o }"))
 
 
