@@ -1,4 +1,4 @@
-"""Read told activities, *first the plate, then the forks*, and files of learned ones.
+"""Read described activities, *first the plate, then the forks*, and files of learned ones.
 
 >>> [[str(item) for item in group] for group in read_activity("First the plate, then two forks. Finally the knife.")]
 [['plate'], ['fork (2)'], ['knife']]

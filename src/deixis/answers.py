@@ -167,7 +167,7 @@ def count(number: int, noun: str) -> str:
 
 
 def share(part: int, total: int, noun: str) -> str:
-    """Return how many of all things are meant, as a noun phrase: *both facts*, *2 of 5 facts*.
+    """Return a part of a total as a noun phrase: *both facts*, *2 of 5 facts*.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ class Attributes:
         return self.related.relation(subject, thing).name.removeprefix("exactly_")
 
     def fitting(self, others: Sequence[int], word: str, thing: int) -> list[int]:
-        """Return those of some objects that a wide relation to one object fits, this object itself included.
+        """Return the objects, among some, that have a wide relation to an object, and this object itself.
 
         Parameters
         ----------

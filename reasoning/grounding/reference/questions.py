@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 WRONG_ANSWERS = 0.002
-"""Share of answers that are wrong, for which a later answer can make up."""
+"""Share of wrong answers, which later answers can correct."""
 
 MIN_PROBABILITY = 2e-3
 """Probability below which an object does not decide how clear a question is."""

@@ -32,7 +32,7 @@ UNNAMED, NAMELESS = "unnamed", "nameless"
 """Predicates of tables whose layout has no name: the scene, and that a person gave no name for it."""
 
 CALLED, NOT_CALLED = "called", "notCalled"
-"""Predicates of what a person calls a thing that is tracked, and does not call it."""
+"""Predicates of the names that a person gives to a tracked thing, and of those that the person denies."""
 
 SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""

@@ -42,8 +42,8 @@ TURN_DEVIATION = np.deg2rad(7.0)
 """Standard deviation of the direction of things in their places."""
 
 MIN_TURN_OUTLIERS = 1e-4
-"""Least share of things that lie anyhow without a mistake. It is a tenth with no table seen, and a tenth of that with
-each further one."""
+"""Minimum share of things that lie at any angle without a mistake. It is a tenth with no table seen, and a tenth of
+that with each further one."""
 
 OBSERVED_WEIGHT = 0.5
 """Factor of the evidence of relations that were seen but not stated, as those of different pairs depend on each other.

@@ -18,7 +18,7 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding
 
 QUESTION_COST = 0.5
-"""Cost of a question in nats: it is asked if its answer is expected to tell more."""
+"""Cost of a question in nats: it is asked if the expected information of its answer is larger."""
 
 MIN_SETTLED_PROBABILITY = 0.97
 """Probability from which a role that waits is taught in hindsight."""

@@ -108,7 +108,7 @@ def log_probability(model: Model, example: Example) -> Score | None:
 
 
 FIRST_LOG_ODDS = -4.0
-"""Log odds from which a fit of the calibration starts, that a description tells nothing."""
+"""Log odds from which a fit of the calibration starts, that a description carries no information."""
 
 DOUBT_PENALTY = 0.5
 """Penalty in nats for a weight of the calibration that differs by 1 from its start."""

@@ -1,4 +1,4 @@
-"""The command ``deixis robot run``: a robot that sees, is shown and told, and says what it found, while it happens."""
+"""The command ``deixis robot run``: a robot that sees, learns from people, and reports what it finds as it happens."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ robot_app = typer.Typer(help="Run the robot on one memory.", rich_markup_mode=No
 
 @robot_app.callback()
 def _robot() -> None:
-    """Run a robot that sees, is shown and told, and learns."""
+    """Run a robot that sees a table, learns from people, and checks the next table."""
 
 
 @robot_app.command("run")

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Scene
 
 LAYOUTS = ("formal_dinner", "script2", "informal", "breakfast", "tea", "childs_place")
-"""Layouts of the tables; script2 is the formal dinner with three more glasses, by another hand."""
+"""Layouts of the tables; script2 is the formal dinner with three more glasses, in other words."""
 
 SHOWN = ("dinner_plate", "dinner_fork", "dinner_knife", "napkin")
 """Categories that are taught by pointing."""

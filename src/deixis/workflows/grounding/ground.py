@@ -436,7 +436,7 @@ def _contradiction(request: GroundingRequest) -> tuple[str, ...]:
 
 
 def _answer_with_questions(request: GroundingRequest, ask: Ask, scene: Scene, time_limit: float) -> Grounding:
-    """Ground a script in a scene, by asking what would tell the likeliest groundings apart."""
+    """Ground a script in a scene, with questions that distinguish the likeliest groundings."""
     from deixis.reasoning.grounding.questions.inquiry import Inquiry
     from deixis.reasoning.grounding.questions.refinement import Hold, refine
     from deixis.reasoning.grounding.questions.situation import Situation
