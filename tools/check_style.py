@@ -43,7 +43,7 @@ NOT_A_VERB = (
 PHRASES = {
     r"but for": "except, or without",
     r"so many as": "as many as, or a bound in symbols",
-    r"(?:is|are|be|was|were|being) told(?! apart)": "name who reports what: 'the message names …'",
+    r"(?:is|are|be|been|was|were|being) told(?! apart)": "name who reports what: 'the message names …'",
     r"anew": "again, or re- before the verb",
     r"(?<!there )(?-i:(?:is|are|was|were) none)": "there is no …",
     r"(?<!teddy )(?<!the )(?<!a )(?<![\"'`])(?-i:bears?)(?! in mind)": "has, carries, or supports",
@@ -53,6 +53,15 @@ PHRASES = {
     r"(?<!there )(?:is|are) no(?= )(?! (?:longer|more|less|fewer|greater|larger|smaller|matter))": "is not a …",
     r"is to be|are to be": "must be, or will be",
     r"thereof|therein|whereof|wherein|thereby": "of it, in it",
+    r"from which on": "at which, above which, or minimum",
+    r"if need be": "if necessary, or the condition",
+    r"any more(?=[.,;:)])": "no longer",
+    r"ever (?:nearer|closer|farther|smaller|larger|greater|sharper)": "decreasing, increasing, or closer and closer",
+    r"worth (?:its|their) while": "pays off, or the minimum from which it pays off",
+    r"learnt|whilst": "learned, while",
+    r"(?:its|and the|or the) like(?=[ .,;:)]|$)": "similar words, or the whole list",
+    r"(?:return|yield|compute|draw|write|do)s? the same (?:as|of|for|without|with)": "name what it is",
+    r"tells? (?:nothing|little|something)": "carries no information, or states nothing",
 }
 """Wordings that stand in the way of a reader, as regular expressions, and what to write instead."""
 

@@ -414,7 +414,7 @@ def without_request(words: list[Word]) -> bool:
     Returns
     -------
     bool
-        False for a sentence that asks or tells something.
+        False for a question or a statement.
     """
     start = next((i for i, word in enumerate(words) if word.is_word and word.norm not in _BEFORE_REQUESTS), 0)
     norms = [word.norm for word in words[start : start + 4]]
@@ -520,7 +520,7 @@ DOUBT = re.compile(
 
 
 def _without_doubts_of_the_reader(text: str, span: Span, words: list[Word]) -> None:
-    """Leave out *if in doubt* and its like at the beginning of a sentence."""
+    """Leave out *if in doubt* and similar phrases at the beginning of a sentence."""
     doubt = DOUBT.match(text, *span)
     if doubt is not None:
         words[:] = [word for word in words if word.start >= doubt.end()]

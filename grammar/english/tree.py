@@ -154,7 +154,7 @@ class Clause:
 
     ``choices`` are further lists of predicates of which one holds instead (*or, if you prefer, …*). ``condition`` is
     the text of an *if* clause, ``modal`` the word that makes it less than a plain statement (``should``, ``may``,
-    ``must``, ``cannot``), ``past`` is True if it need not hold any more.
+    ``must``, ``cannot``), ``past`` is True if it may no longer hold.
     """
 
     subject: NounPhrase | None

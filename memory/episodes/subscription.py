@@ -139,7 +139,7 @@ class Subscription:
         Returns
         -------
         bool
-            True if it has been told in time.
+            True if it has been notified in time.
         """
         with self._moved:
             return self._moved.wait_for(lambda: self._position >= sequence, timeout)

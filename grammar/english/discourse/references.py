@@ -176,7 +176,7 @@ class References:
         return Region(term, " ".join(words) or None, None if of is None or of.role is Role.SURFACE else of)
 
     def find(self, phrase: NounPhrase, relation: str | None = None, besides: Entity | None = None) -> Entity | None:
-        """Return the object or group that a phrase stands for, a new one if need be; None for nothing.
+        """Return the object or group that a phrase stands for, a new one if necessary; None for nothing.
 
         Parameters
         ----------
