@@ -206,7 +206,9 @@ def constants() -> None:
     learned = [
         [(name, [recognising.COLOUR.describe(cloud)]) for name, cloud in found_on_table(seed)] for seed in TABLES[0]
     ]
-    icds = [one.intra_category_distance or np.nan for one in _taught((recognising.COLOUR,), learned, DEFAULT).categories]
+    icds = [
+        one.intra_category_distance or np.nan for one in _taught((recognising.COLOUR,), learned, DEFAULT).categories
+    ]
     print(f"PRIOR_SPREADS: colour {np.median(icds):.3g}, of what is found on laid tables", flush=True)
     forms = [form_parts(view) for kind in KINDS for seed in range(4) for view in views_of_thing(kind, seed, 2)]
     for name in PARTS:

@@ -55,8 +55,8 @@ def test_wordings_are_found_in_comments_strings_and_pages(wording: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "the value is None", "there is no fact", "it is no longer there", "a teddy bear", "any more facts", "and others like it",
-        "the same result", "tells them apart",
+        "the value is None", "there is no fact", "it is no longer there", "a teddy bear", "any more facts",
+        "and others like it", "the same result", "tells them apart",
     ],
 )  # fmt: skip
 def test_similar_wordings_are_accepted(text: str) -> None:
