@@ -36,7 +36,7 @@ MemoryLimit = Annotated[
     float, typer.Option(min=0.01, metavar="GB", help="Refuse a problem that needs more memory, in gigabytes.")
 ]
 HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Ignore the labels in the scene.")]
-Image = Annotated[str | None, typer.Option(metavar="NAME", help="Which image of a COCO file.")]
+Image = Annotated[str | None, typer.Option(metavar="NAME", help="Image of a COCO file, by file name or id.")]
 MemoryDir = Annotated[
     Path | None,
     typer.Option("--memory", metavar="DIR", help="Folder of the memory (default: $DEIXIS_MEMORY, else in your home)."),
