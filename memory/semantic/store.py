@@ -505,7 +505,7 @@ class SemanticMemory(Closing):
             return ledger.lessons(self.store)
 
     def knows(self, lesson: str) -> bool:
-        """Say whether there is a lesson with an id.
+        """Return whether there is a lesson with an id.
 
         Parameters
         ----------

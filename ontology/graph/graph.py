@@ -131,7 +131,7 @@ class RelationGraph:
         kinds
             Class IRI of each node or None; empty if no kind is known.
         boxes
-            Least and greatest corners, shape (n, 2, d), or None.
+            Minimum and maximum corners, shape (n, 2, d), or None.
         colours
             IRI of the colour of each node or None; empty if no colour is known.
 

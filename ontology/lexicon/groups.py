@@ -20,7 +20,7 @@ GROUPS_FILE = Path(__file__).with_name("groups.txt")
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A group: its words, the IRIs of the kinds in it, and the names in it that the lexicon does not know whole.
+    """A group: its words, the IRIs of the kinds in it, and the names in it that the lexicon lacks.
 
     Each kind stands for its narrower kinds too. The names are in the singular.
     """

@@ -46,10 +46,10 @@ from deixis.perception.tracking.things.particles import Estimate
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 MIN_FINITE_SHARE = 0.02
-"""Least share of points with a depth in a frame that is used."""
+"""Minimum share of points with a depth in a frame that is used."""
 
 MIN_OWN_PIXELS = 6
-"""Least number of measured pixels of a thing that decide whether it rests."""
+"""Minimum number of measured pixels of a thing that decide whether it rests."""
 
 MIN_WAY = 0.012
 """Distance in metres from which a thing whose place is hidden has moved."""
@@ -58,10 +58,10 @@ MAX_SPEED = 0.8
 """Speed in metres per second at which a thing may move while it is not found."""
 
 MIN_MOVING_PIXELS = 80
-"""Least number of pixels of something that moves and is not a thing, such as a part of a hand."""
+"""Minimum number of pixels of something that moves and is not a thing, such as a part of a hand."""
 
 DETECTION_PAUSE = 0.25
-"""Least time in seconds between two segmentations."""
+"""Minimum time in seconds between two segmentations."""
 
 EDGE_REACH = 1
 """Distance in pixels within which an equal depth of the reference is looked for, while the camera moves."""
@@ -70,14 +70,14 @@ UNSTEADY_FOR = 1.0
 """Time in seconds after a movement of the camera in which pixels are compared within ``EDGE_REACH``."""
 
 EXPOSED = 0.3
-"""Least share of the points of a thing that nothing hides, for its place to be called empty or not."""
+"""Minimum share of the points of a thing that nothing hides, for its place to be called empty or not."""
 
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
 
 MIN_GAIN, LEAST_EXPOSED, SEEN_WELL = 0.15, 0.1, 0.5
-"""Least gain of agreement by which a thing that is mostly hidden has moved, the least share of its points that nothing
-hides where it rested, for this comparison, and the least share that is seen elsewhere without it."""
+"""Minimum gain of agreement by which a thing that is mostly hidden has moved, the minimum share of its points that
+nothing hides where it rested, for this comparison, and the minimum share that is seen elsewhere without it."""
 
 BACK, BACK_AFTER = 0.7, 0.3
 """Agreement from which a thing that is not found is again where it rested, and the time for which it was not found."""
@@ -102,13 +102,13 @@ TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
 mean likeness of their colours in any light."""
 
 REVEALED = 0.5
-"""Least share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
+"""Minimum share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
 
 SET_DOWN = 1.0
 """Time in seconds before a new thing is steady in which the hand that sets it down is near."""
 
 FILLED = 0.5
-"""Least ratio of the sides of two boxes of one thing."""
+"""Minimum ratio of the sides of two boxes of one thing."""
 
 CONFIRM_AFTER = 0.3
 """Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
@@ -718,7 +718,7 @@ class Tracker:
         thing.rest = next(self._rests)
 
     def _claim(self, thing: Pipeline, image: FrameImage, changes: Changes) -> None:
-        """Give the changed pixels within the box of a thing that has come to rest to it."""
+        """Assign the changed pixels within the box of a thing that has come to rest to this thing."""
         from deixis.perception.tracking.kernels import SAME
 
         assert self._reference is not None and self._view is not None

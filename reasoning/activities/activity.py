@@ -380,7 +380,7 @@ class Activity:
         return found
 
     def usual_order(self) -> tuple[tuple[Step, Step], ...]:
-        """Return the pairs of steps of which the first always started first, as described or in all examples.
+        """Return the pairs of steps in which the first always started first, as described or in all examples.
 
         Returns
         -------

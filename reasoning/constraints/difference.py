@@ -148,7 +148,7 @@ class DifferenceNetwork:
         self.keep()
 
     def admits(self, difference: Difference) -> bool:
-        """Say whether a constraint closes no negative cycle.
+        """Return whether a constraint closes no negative cycle.
 
         Parameters
         ----------

@@ -64,7 +64,7 @@ class PairGeometry:
 
     @cached_property
     def _corners(self) -> tuple[Array, Array, Array, Array]:
-        """Least and greatest corners seen from above, each of shape (2, n); those of the objects (2, m)."""
+        """Minimum and maximum corners seen from above, each of shape (2, n); those of the objects (2, m)."""
         return tuple(side[:, corner, :2].T.copy() for side in (self.boxes, self.objects) for corner in (0, 1))  # type: ignore[return-value]
 
     @cached_property
@@ -160,7 +160,7 @@ class PairBlocks:
         Parameters
         ----------
         boxes
-            Least and greatest corners, shape (n, 2, d).
+            Minimum and maximum corners, shape (n, 2, d).
         deadline
             Time limit.
         poses
@@ -344,7 +344,7 @@ def pair_geometry(boxes: NDArray[np.float64], poses: Poses | None = None) -> Pai
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, d), d = 2 or 3.
+        Minimum and maximum corners, shape (n, 2, d), d = 2 or 3.
     poses
         Poses of the n things; None for axes along the sides of the boxes, and no fronts.
 

@@ -68,7 +68,7 @@ def box_relations(
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, d), d = 2 or 3, in metres: x to the viewer's right, y away from the
+        Minimum and maximum corners, shape (n, 2, d), d = 2 or 3, in metres: x to the viewer's right, y away from the
         viewer, z up.
     vocabulary
         The relations to name the pairs by.
@@ -277,7 +277,7 @@ def scene_relations(
         Names of the n objects. The order of the ids decides between equal or crossing boxes of one centre, so that the
         order of listing does not matter.
     boxes
-        Least and greatest corners in metres, shape (n, 2, d), d = 2 or 3.
+        Minimum and maximum corners in metres, shape (n, 2, d), d = 2 or 3.
     vocabulary
         The relations to name the pairs by.
     kinds

@@ -67,7 +67,7 @@ class KnowledgeStore(Closing):
         self._memory.require_usable()
 
     def exists(self) -> bool:
-        """Say whether there is a memory at the path.
+        """Return whether there is a memory at the path.
 
         Returns
         -------

@@ -495,7 +495,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def remembers(self) -> bool:
-        """Say whether there is a memory at the path.
+        """Return whether there is a memory at the path.
 
         Returns
         -------
@@ -994,7 +994,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def has_views(self) -> bool:
-        """Say whether the memory has views.
+        """Return whether the memory has views.
 
         Returns
         -------

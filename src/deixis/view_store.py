@@ -49,7 +49,7 @@ class ViewStore(Closing):
         self._memory.close()
 
     def exists(self) -> bool:
-        """Say whether the memory has views.
+        """Return whether the memory has views.
 
         Returns
         -------

@@ -31,7 +31,7 @@ from deixis.grammar.english.vocabulary.relation_words import prepositions
 from deixis.ontology.inflection import plural, singulars
 
 MAX_COUNTED = 1000
-"""Largest number of a noun phrase that is read as so many things."""
+"""Largest number in a noun phrase (*twelve cups*) for which the group is expanded into single things."""
 NAMED = re.compile(
     r"\b(?:the|a|an|your|my|[A-Z]\w+['\u2019]s)\s+((?:(?!(?:the|a|an|your|my|is|are|was|were)\b)[a-z]+\s+)*?(?!(?:is|are|was|were)\b)[a-z]+)(?=\s+(?:and|then|so|,)|[,;:])",
     re.IGNORECASE,

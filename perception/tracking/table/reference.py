@@ -190,7 +190,7 @@ class Reference:
         return places
 
     def give(self, pixels: NDArray[np.intp], owner: int, image: FrameImage) -> Beneath:
-        """Give pixels to an owner, with the measurements of a frame, and return what was there before.
+        """Assign pixels to an owner, with the measurements of a frame, and return what was there before.
 
         Parameters
         ----------

@@ -43,7 +43,7 @@ ALIGN_STEP, ALIGN_END = (0.012, 0.012, np.deg2rad(6.0)), 0.001
 """First steps in metres and radians of the search for a better pose at rest, and the step at which it ends."""
 
 MIN_ALIGNED = 0.6
-"""Least share of the points of a thing that nothing hides, within the image, for its pose at rest to be corrected."""
+"""Minimum share of the points of a thing that nothing hides, within the image, for its pose at rest to be corrected."""
 
 SHADE_SPREAD, COLOUR_SPREAD = 38.0, 15.0
 """Standard deviations of the colours of one place of a thing, as distances in RGB from 0 to 255: of the length of the
@@ -62,7 +62,7 @@ COLOURS = 8
 """Number of colours of a thing with which changed pixels are compared."""
 
 LEAST_INSIDE = 0.08
-"""Least share of the points of a thing that are within the image, for it to be seen well."""
+"""Minimum share of the points of a thing that are within the image, for it to be seen well."""
 
 MIN_POINTS_BEYOND = 5
 """Number of points outside its box from which the box of a thing is extended."""

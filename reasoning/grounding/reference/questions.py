@@ -30,7 +30,7 @@ MAX_LANDMARKS = 14
 """Maximum number of landmarks that questions compare."""
 
 CLEAR = 1.15
-"""Least ratio of two lengths that an answer tells apart."""
+"""Minimum ratio of two lengths that an answer tells apart."""
 
 
 def best_question(probabilities: Array, room: Room, labelled: bool = True, enough: float = DECIDED) -> Question | None:

@@ -24,7 +24,7 @@ from deixis.ontology.tbox import Ontology
 
 FOLDER = "vrd"
 MIN_OBJECTS = 4
-"""Least number of objects that the ten exact words relate in a photograph."""
+"""Minimum number of objects that the ten exact words relate in a photograph."""
 
 WORDS = {
     "on": "on",

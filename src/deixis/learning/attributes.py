@@ -20,7 +20,7 @@ MIN_POINTS = 20
 """Minimum number of coloured points of a thing whose surface is measured."""
 
 LEAST_SIDE = 0.003
-"""Least length of a side in metres, below which sides are not compared."""
+"""Minimum length of a side in metres, below which sides are not compared."""
 
 
 def measured(scene: Scene) -> Array:

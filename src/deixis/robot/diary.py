@@ -38,7 +38,7 @@ SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""
 
 MIN_DURATION = 1e-3
-"""Least duration of a fluent in seconds."""
+"""Minimum duration of a fluent in seconds."""
 
 Found = tuple[str, str, str]
 """A statement: subject, predicate and object."""

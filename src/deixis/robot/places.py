@@ -30,13 +30,13 @@ BOX_SIDE = 0.04
 """Side length in metres of the boxes."""
 
 MAX_SUPPORT_HEIGHT = 0.05
-"""Greatest height in metres of a thing on which an object may lie."""
+"""Maximum height in metres of a thing on which an object may lie."""
 
 MIN_PLACE_RATIO = 0.2
 """Probability of a place, as a share of that of the best one, from which an object may well be there."""
 
 MIN_CAMERA_HEIGHT = 0.05
-"""Least height in metres of a camera above the table whose position is known."""
+"""Minimum height in metres of a camera above the table whose position is known."""
 
 MAX_THINGS = 90
 """Number of things from which places are not computed."""

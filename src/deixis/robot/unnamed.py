@@ -223,7 +223,7 @@ def place_among(
 
 
 def is_same_table(first: Scene, second: Scene) -> bool:
-    """Say whether two scenes show one table, which may be laid or cleared meanwhile.
+    """Return whether two scenes show one table, which may be laid or cleared meanwhile.
 
     Parameters
     ----------

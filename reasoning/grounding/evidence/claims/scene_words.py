@@ -86,7 +86,7 @@ def scene_words(boxes: Array, poses: Poses | None = None, models: RelationModels
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, d).
+        Minimum and maximum corners, shape (n, 2, d).
     poses
         Orientation of the things; None for axes along the sides of the boxes, and no fronts.
     models

@@ -49,7 +49,7 @@ ALIKE_SIZES = 0.25
 """Standard deviation of the logarithms of the sides of objects of one class in one scene."""
 
 STRAY = 1e-6
-"""Least density of the sizes of objects, so that a size that no other object has carries little information."""
+"""Minimum density of the sizes of objects, so that a size that no other object has carries little information."""
 
 SIZE_RATIOS = (-8.0, 6.0)
 """Range of the feature ``size`` of an object whose class is unknown."""

@@ -78,7 +78,7 @@ class Room:
         ids
             Names of the n objects.
         boxes
-            Least and greatest corners, shape (n, 2, 2) or (n, 2, 3).
+            Minimum and maximum corners, shape (n, 2, 2) or (n, 2, 3).
         labels
             Category of each object, or None.
         colours

@@ -114,7 +114,7 @@ DOUBT_PENALTY = 0.5
 """Penalty in nats for a weight of the calibration that differs by 1 from its start."""
 
 LEAST_WEIGHT = 5e-4
-"""Least magnitude of a weight that is written to a file."""
+"""Minimum magnitude of a weight that is written to a file."""
 
 INITIAL: Mapping[str, float] = {
     "same": 3.0,

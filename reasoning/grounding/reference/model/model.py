@@ -70,7 +70,7 @@ COUNTED = frozenset({"proximity", "support", "inside"})
 """Families of relations whose landmarks are counted (*the table with four chairs*)."""
 
 COUNTED_GAP = 0.4
-"""Greatest distance of a counted landmark over the scale of the scene."""
+"""Maximum distance of a counted landmark over the scale of the scene."""
 
 LIKELY = 0.5
 """Minimum probability at which an object counts as one of the class that a noun names."""

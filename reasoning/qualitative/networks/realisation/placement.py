@@ -37,7 +37,7 @@ PRECISION = 24
 FEASIBLE = 1e-6
 """Maximum slack of a constraint that counts as met; smaller than any margin."""
 MAX_COORDINATE = 1000.0
-"""Greatest coordinate per box."""
+"""Maximum coordinate per box."""
 COMPACTNESS = 1e-4
 """Cost of one unit of a coordinate (one unit of slack costs 1 or more), so that boxes do not spread without need."""
 

@@ -25,10 +25,10 @@ from deixis.workflows.layouts.lay_table import LaidScript, lay_script
 Array = NDArray[np.float64]
 
 GAP = 0.012
-"""Least distance in metres between a tampered thing and others."""
+"""Minimum distance in metres between a tampered thing and others."""
 
 MIN_DISPLACEMENT = 0.10
-"""Least distance in metres by which a thing is displaced."""
+"""Minimum distance in metres by which a thing is displaced."""
 
 CLEAR = 0.03
 """Distance in metres by which a displaced thing could be moved on without a violated fact holding again."""
@@ -40,7 +40,7 @@ QUARTER = (np.deg2rad(60.0), np.deg2rad(120.0))
 """Angles between which a thing is turned."""
 
 MAX_SHIFT = 0.08
-"""Greatest distance in metres by which a turned thing is moved, so that it fits."""
+"""Maximum distance in metres by which a turned thing is moved, so that it fits."""
 
 LONG = 2.0
 """Ratio of length to width from which a thing can be turned by mistake."""

@@ -37,7 +37,7 @@ DISTANCE_RATIO = 1.3
 """Ratio to the mean up to which a distance counts as the same."""
 
 MIN_DISTANCE = 0.01
-"""Least distance in metres that is stated; things that nearly touch have none."""
+"""Minimum distance in metres that is stated; things that nearly touch have none."""
 
 
 @dataclass(frozen=True, slots=True)

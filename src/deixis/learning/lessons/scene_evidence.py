@@ -190,7 +190,7 @@ def scene_labels(scene: Scene) -> dict[str, Label | None]:
 
 
 def named_by_candidates(thing: PerceivedObject) -> bool:
-    """Say whether the candidates of a thing are used instead of its label.
+    """Return whether the candidates of a thing are used instead of its label.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ MAX_QUESTIONS = 20
 """Maximum number of questions about one object."""
 
 MIN_LISTED = 1e-3
-"""Least probability of a listed alternative."""
+"""Minimum probability of a listed alternative."""
 
 
 def refer(

@@ -20,10 +20,10 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.options import DECIDED, Select
 
 MIN_VIEWPOINT_PROBABILITY, MAX_VIEWPOINTS = 0.005, 8
-"""Least probability of a viewpoint that contributes to the probabilities of matches, and the most such viewpoints."""
+"""Minimum probability of a viewpoint that contributes to the probabilities of matches, and the most such viewpoints."""
 
 MIN_CONCENTRATION = 0.5
-"""Least mean resultant length of the angles of one viewpoint: that of an even spread over 217 degrees."""
+"""Minimum mean resultant length of the angles of one viewpoint: that of an even spread over 217 degrees."""
 
 _NO_VIEWPOINT_NOTE = "the scene was taken as it is: nothing indicates from which side it was described"
 

@@ -99,7 +99,7 @@ class _Learner(Protocol):
         ...
 
     def remembers(self) -> bool:
-        """Say whether there is a semantic memory."""
+        """Return whether there is a semantic memory."""
         ...
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
@@ -107,7 +107,7 @@ class _Learner(Protocol):
         ...
 
     def has_views(self) -> bool:
-        """Say whether there is a perceptual memory."""
+        """Return whether there is a perceptual memory."""
         ...
 
     def categories(self) -> dict[str, int]:

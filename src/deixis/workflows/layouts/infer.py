@@ -232,7 +232,7 @@ def _implied(script: Script, time_limit: float) -> tuple[tuple[ClaimFact, ...], 
 
 
 def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> bool | None:
-    """Say whether the facts of a script can all hold, without a reason.
+    """Return whether the facts of a script can all hold, without a reason.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 def is_table(thing: Sized, ontology: Ontology) -> bool:
-    """Say whether a thing is of a kind of table.
+    """Return whether a thing is of a kind of table.
 
     Parameters
     ----------

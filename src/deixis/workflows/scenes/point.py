@@ -34,7 +34,7 @@ MIN_LEAD = 0.25
 """Time by which a gesture must overlap the words more than others that point at something else, in seconds."""
 
 MIN_SIZE_FIT = 0.02
-"""Least weight of a thing whose size is unusual for what a name means."""
+"""Minimum weight of a thing whose size is unusual for what a name means."""
 
 
 @dataclass(frozen=True, slots=True)
