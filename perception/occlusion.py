@@ -31,7 +31,7 @@ MIN_HIDING_HEIGHT = 0.05
 """Minimum height in metres of a thing that hides the middle of another one."""
 
 FLOATING = 0.03
-"""Height in metres of the gap below a thing from which it cannot rest on what is below."""
+"""Minimum height in metres of the gap below a thing at which it cannot rest on what is below."""
 
 WIDER, WIDTH_ERROR = 1.3, 0.006
 """Maximum ratio of the width of a joined thing to that of its wider part, and metres beyond that."""

@@ -52,7 +52,7 @@ MIN_OWN_PIXELS = 6
 """Minimum number of measured pixels of a thing that decide whether it rests."""
 
 MIN_WAY = 0.012
-"""Distance in metres from which a thing whose place is hidden has moved."""
+"""Minimum distance in metres to its old place at which a thing has moved while this place is hidden."""
 
 MAX_SPEED = 0.8
 """Speed in metres per second at which a thing may move while it is not found."""
@@ -80,7 +80,7 @@ MIN_GAIN, LEAST_EXPOSED, SEEN_WELL = 0.15, 0.1, 0.5
 nothing hides where it rested, for this comparison, and the minimum share that is seen elsewhere without it."""
 
 BACK, BACK_AFTER = 0.7, 0.3
-"""Agreement from which a thing that is not found is again where it rested, and the time for which it was not found."""
+"""Minimum agreement at which a thing that was not found is again where it rested, and how long it was not found."""
 
 AROUND, MIN_EXPLAINED = 0.03, 0.6
 """Distance in metres around a thing that is found far away, and its least share of the points that changed there."""
@@ -120,16 +120,16 @@ BLIND_FOR = 1.5
 """Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
 
 BLINK = 1.5
-"""Time in seconds between two frames from which anything may have happened in between."""
+"""Minimum time in seconds between two frames at which anything may have happened in between."""
 
 HAND_MEMORY = 0.5
 """Time in seconds after a hand was seen in which it may have moved several things at once."""
 
 SAME_PIXELS = 0.3
-"""Intersection over union of pixels from which a detected and a tracked thing may be one."""
+"""Minimum intersection over union of pixels at which a detected and a tracked thing may be one."""
 
 SAME_MODEL = 0.8
-"""Intersection over union of pixels from which a tracked thing keeps its model at a look at the whole table."""
+"""Minimum intersection over union of pixels at which a tracked thing keeps its model at a look at the whole table."""
 
 
 class Tracker:

@@ -51,7 +51,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 
 SURE_CONFIDENCE = 0.9
-"""Confidence from which a label identifies its object."""
+"""Minimum confidence at which a label identifies its object."""
 
 MAX_ROLES_ROTATED = 30
 """Number of labelled roles up to which rotations of three are searched for; with more roles, only swaps."""

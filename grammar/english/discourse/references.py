@@ -40,7 +40,7 @@ NAMED = re.compile(
 MAX_SENTENCES_TO_GROUP = 4
 """Number of sentences over which *the smallest* goes back to a group."""
 MIN_LOST = 12
-"""Number of characters from which a phrase that was not understood can name a thing."""
+"""Minimum number of characters at which a phrase that was not understood can name a thing."""
 REGIONS = frozenset(
     [
         "corner",

@@ -28,7 +28,7 @@ MIN_CLOSE, MIN_ALIKE = 0.5, 0.4
 """Minimum shares of the points in view whose distance and brightness agree, for a pose to be taken."""
 
 SURE = 0.6
-"""Agreement from which no other start is tried."""
+"""Minimum agreement at which no other start is tried."""
 
 LOST_AFTER, ASIDE = 0.25, 0.03
 """Time in seconds without a pose after which poses beside the last one are tried, and their distance in metres."""

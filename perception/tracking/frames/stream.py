@@ -33,7 +33,7 @@ CLOUD_SUFFIXES = frozenset({".pcd", ".ply", ".npz", ".png", ".npy"})
 """Suffixes of files that a folder of clouds may contain; PNG and NPY are depth images, which need intrinsics."""
 
 SETTLE_SECONDS = 0.2
-"""Age in seconds from which a file in a growing folder counts as completely written."""
+"""Minimum age in seconds at which a file in a growing folder counts as completely written."""
 
 
 @runtime_checkable

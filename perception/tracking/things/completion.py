@@ -34,7 +34,7 @@ MIN_PART, MIN_APART = 12, 4
 """Minimum numbers of pixels of a part: all, and those that do not touch what is known about the thing."""
 
 MAX_CARRIED_VIEWS = 3
-"""Number of views from which the missing parts of a thing that lies on another one are looked for."""
+"""Minimum number of views at which the missing parts of a thing that lies on another one are looked for."""
 
 MIN_FAR_PART = 3
 """Minimum number of pixels of a part on the other side of something that stands before the thing."""
@@ -69,7 +69,7 @@ MAX_LENGTH = 0.28
 """Largest length in metres of a thing and a piece of it together."""
 
 MIN_LIFTED, SUPPORT = 0.025, 0.03
-"""Height in metres from which a thing seems to float, and the depth below it in which the top of its support is."""
+"""Minimum height in metres of a thing that seems to float, and the depth below it in which its support has its top."""
 
 MIN_BEFORE = 0.01
 """Distance in metres by which a surface must be nearer than a place that it hides."""

@@ -65,7 +65,7 @@ LEAST_INSIDE = 0.08
 """Minimum share of the points of a thing that are within the image, for it to be seen well."""
 
 MIN_POINTS_BEYOND = 5
-"""Number of points outside its box from which the box of a thing is extended."""
+"""Minimum number of points outside its box at which the box of a thing is extended."""
 
 NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""

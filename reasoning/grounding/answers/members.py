@@ -22,7 +22,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 
 MEMBER_FROM = 0.5
-"""Probability from which a thing counts as a member of a group."""
+"""Minimum probability at which a thing counts as a member of a group."""
 
 Array = NDArray[np.float64]
 Assignment = NDArray[np.int64]

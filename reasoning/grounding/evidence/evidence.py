@@ -51,7 +51,7 @@ SECONDS_PER_CELL = 1e-8
 """Seconds for copying one cell of the tables for an engine, which cannot be interrupted."""
 
 HELD_FROM = 0.5
-"""Degree from which a graded word counts as holding of a pair."""
+"""Minimum degree at which a graded word counts as holding of a pair."""
 
 MAX_KEPT_THINGS = 150
 """Maximum number of things for which the likelihood ratios of all pairs are cached beside the tables."""

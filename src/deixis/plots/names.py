@@ -62,7 +62,7 @@ POINT = 8.0
 """Side of the square around a point that names avoid, in pixels."""
 
 LEADER = 10.0
-"""Pixels between a name and its thing from which a line joins them."""
+"""Minimum number of pixels between a name and its thing at which a line joins them."""
 
 
 class Box(NamedTuple):

@@ -22,7 +22,7 @@ PRIOR_PRESENT = 0.95
 """Probability that an object is there when a person says so."""
 
 MIN_MATCH_PROBABILITY = 0.9
-"""Probability from which a thing is taken for the expected object."""
+"""Minimum probability at which a thing is taken for the expected object."""
 
 DETECTION_PROBABILITY = 0.7
 """Probability that one look detects a thing whose place is in view."""
@@ -34,7 +34,7 @@ MIN_PRESENT_PROBABILITY = 0.05
 """Probability below which an object is no longer expected."""
 
 MIN_SHARE_IN_VIEW = 0.8
-"""Share of the place of an object from which all of it counts as in view."""
+"""Minimum share of the place of an object at which all of it counts as in view."""
 
 DESCRIBED = PLACES | frozenset(
     (

@@ -36,7 +36,7 @@ FACT_HOLDS, SUPPORT_HOLDS = 0.998, 0.98
 which a small error of heights breaks."""
 
 MIN_TURN = np.deg2rad(28.0)
-"""Angle from which a thing is compared with how it would lie straight."""
+"""Minimum angle at which a thing is compared with how it would lie straight."""
 
 TURN_DEVIATION = np.deg2rad(7.0)
 """Standard deviation of the direction of things in their places."""
@@ -57,7 +57,7 @@ OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
 """Prior standard deviation in metres of the offset between two things, and the number of tables that it counts as."""
 
 MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
-"""Height in metres above the table from which a thing must rest on another one, and the error of that one's height."""
+"""Minimum height in metres at which a thing must rest on another one, and the error of the height of that one."""
 
 MAX_SLENDER_WIDTH, MAX_SLENDERNESS = 0.02, 2.5
 """Width in metres below which a thing cannot stand if it is higher than ``MAX_SLENDERNESS`` times its width."""

@@ -21,7 +21,7 @@ QUESTION_COST = 0.5
 """Cost of a question in nats: it is asked if the expected information of its answer is larger."""
 
 MIN_SETTLED_PROBABILITY = 0.97
-"""Probability from which a role that waits is taught in hindsight."""
+"""Minimum probability at which a role that waits is taught in hindsight."""
 
 
 class SettledBy(StrEnum):

@@ -39,7 +39,7 @@ MIN_CAMERA_HEIGHT = 0.05
 """Minimum height in metres of a camera above the table whose position is known."""
 
 MAX_THINGS = 90
-"""Number of things from which places are not computed."""
+"""Minimum number of things for which places are not computed."""
 
 
 @dataclass(frozen=True, eq=False)

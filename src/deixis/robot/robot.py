@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 
 MIN_NAME_PROBABILITY = 0.8
-"""Probability from which a name is written to the blackboard as the category of a thing."""
+"""Minimum probability at which a name is written to the blackboard as the category of a thing."""
 
 GROUNDING_TIME_LIMIT = 5.0
 """Time limit in seconds for looking for one expected object."""

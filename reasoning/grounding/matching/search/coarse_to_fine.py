@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
 MIN_COARSE_THINGS = 200
-"""Number of things from which belief propagation goes from coarse to fine."""
+"""Minimum number of things at which belief propagation goes from coarse to fine."""
 
 FIRST_CELLS, KEPT_CELLS = 64, 48
 """Minimum number of cells at the first level, and number of cells that an object keeps before they are divided."""

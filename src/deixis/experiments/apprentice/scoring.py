@@ -23,7 +23,7 @@ from deixis.robot.looking import Fault, Look
 from deixis.workflows.scenes.simulate import Simulation
 
 MIN_SHARED = 0.5
-"""Intersection over union of points from which a detected thing is a true thing."""
+"""Minimum intersection over union of points at which a detected thing is a true thing."""
 
 
 _Said = tuple[MistakeKind, frozenset[str]]

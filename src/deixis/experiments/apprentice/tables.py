@@ -43,7 +43,7 @@ MAX_SHIFT = 0.08
 """Maximum distance in metres by which a turned thing is moved, so that it fits."""
 
 LONG = 2.0
-"""Ratio of length to width from which a thing can be turned by mistake."""
+"""Minimum ratio of length to width at which a thing can be turned by mistake."""
 
 TRIES = 60
 """Number of places tried for a mistake before another one is drawn."""

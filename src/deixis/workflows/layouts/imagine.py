@@ -231,7 +231,7 @@ LONG_SIDE_TO_VIEWER = ("device", "appliance", "furniture")
 """Kinds whose long side faces the viewer, as a keyboard, a microwave or a sofa stands."""
 
 LEAST_WIDE = 0.25
-"""Typical length in metres from which such a thing lies across; a telephone or a computer mouse points away."""
+"""Minimum typical length in metres at which such a thing lies across; a telephone or a computer mouse points away."""
 
 
 def lying_across(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:
