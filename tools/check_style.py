@@ -122,10 +122,19 @@ def _attribute_openings(path: Path, statements: list[ast.stmt]) -> Iterator[Find
                 yield from _riddle(path, statement.lineno, text)
 
 
+_THRESHOLD = re.compile(
+    r"(?:Least|Greatest)\b"
+    r"|(?:Age|Agreement|Angle|Confidence|Degree|Distance|Error|Height|Length|Metres|Probability|Ratio|Share)\b"
+    r"[^.:;]*\sfrom\swhich\b"
+)
+
+
 def _riddle(path: Path, line: int, docstring: str) -> Iterator[Finding]:
     opening = next((words for words in RIDDLES if re.match(rf"{words}\b", docstring.strip())), None)
     if opening is not None:
         yield Finding(path, line, f"docstring opens with '{opening}': say what it is or does")
+    if _THRESHOLD.match(docstring.strip()):
+        yield Finding(path, line, "docstring of a threshold: start with 'Minimum' or 'Maximum', then 'at which'")
 
 
 def _phrase_findings(path: Path, text: str, line: int) -> Iterator[Finding]:

@@ -20,6 +20,14 @@ def test_docstrings_that_open_with_a_question_are_found(opening: str) -> None:
     assert found == f"module.py:2: docstring opens with '{opening}': say what it is or does"
 
 
+@pytest.mark.parametrize("opening", ["Least ratio of two sides", "Ratio of two sides from which a thing is long"])
+def test_thresholds_are_minimum_or_maximum_values(opening: str) -> None:
+    assert messages(f'RATIO = 2.0\n"""{opening}."""\n') == [
+        "module.py:2: docstring of a threshold: start with 'Minimum' or 'Maximum', then 'at which'"
+    ]
+    assert messages('LIKELY = 0.9\n"""Distribution from which samples are drawn."""\n') == []
+
+
 def test_function_docstrings_start_with_a_verb() -> None:
     assert messages('def area():\n    """Return the area."""\n') == []
     (found,) = messages('def area():\n    """The area."""\n')

@@ -33,7 +33,7 @@ MAX_SUPPORT_HEIGHT = 0.05
 """Maximum height in metres of a thing on which an object may lie."""
 
 MIN_PLACE_RATIO = 0.2
-"""Probability of a place, as a share of that of the best one, from which an object may well be there."""
+"""Minimum probability of a place where an object may well be, as a share of the probability of the best place."""
 
 MIN_CAMERA_HEIGHT = 0.05
 """Minimum height in metres of a camera above the table whose position is known."""
