@@ -27,7 +27,7 @@ STEP_PRESENT, RELATION_HOLDS = 0.95, 0.97
 """Probabilities that a described step is carried out, and that a described relation between two steps holds."""
 
 PRIOR = 1.0
-"""Number of examples that the prior of the relations of a pair counts as."""
+"""Weight of the prior of the relations of a pair, as a number of examples."""
 
 STARTS_FIRST = 0b0000000011111
 """Mask of the Allen relations in which the first fluent starts before the second one."""

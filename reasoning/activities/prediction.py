@@ -31,10 +31,10 @@ SLIP = 0.05
 """Probability that a person lays two things in an order other than her usual one."""
 
 FOLLOWING = 8.0
-"""Number of observations that the uniform prior of what directly follows a step counts as."""
+"""Weight of the uniform prior of the next step, as a number of observations."""
 
 SPREAD, SPREAD_WEIGHT = 0.06, 1.0
-"""Prior standard deviation of an offset in metres, and the number of observations that it counts as."""
+"""Prior standard deviation of an offset in metres, and the weight of this prior as a number of observations."""
 
 TAKEN = 0.04
 """Distance in metres from a thing of an equal kind within which a place is taken."""

@@ -217,8 +217,9 @@ class PairBlocks:
 class Surroundings:
     """Pairs of n boxes (n, 2, d) among many more, one block at a time; their crowding is approximate.
 
-    ``distances`` (n, r), in rising order, are those from each box to r others that are spread evenly over the scene:
-    the share of them that is nearer stands for that of all. The work grows with n r, and not with the square of all.
+    ``distances`` (n, r), in rising order, are the distances from each box to r others that are spread evenly over the
+    scene. The share of these others that is nearer than a distance is an estimate for all boxes. The work grows with n
+    r, and not with the square of all.
     """
 
     boxes: Array

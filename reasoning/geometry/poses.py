@@ -140,7 +140,8 @@ class Poses:
         wanted
             Unit vectors: one direction of shape (2,), or those from each thing to m others, shape (n, m, 2).
         facing
-            Whether the things should face in that direction. A thing whose head alone is known may do so with a side.
+            Whether the things should face in that direction. A thing of which only the head is known may face the
+            direction with a side.
         handle
             Whether their handles should point there. That of a long thing is opposite its head.
 

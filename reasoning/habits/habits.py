@@ -50,7 +50,7 @@ BEAM, SLACK = 60, 8.0
 """Descriptions kept in each round of the search; bits above the shortest one up to which a description counts."""
 
 STATED_EXAMPLES = 20
-"""Number of examples that a stated rule counts as."""
+"""Weight of a stated rule, as a number of examples."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The table as it was last seen at rest: depth, colour and owner of every pixel, and since when it is so."""
+"""The table as it was last seen at rest: depth, colour and owner of every pixel, and since when it is at rest."""
 
 from __future__ import annotations
 

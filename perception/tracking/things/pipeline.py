@@ -71,7 +71,7 @@ NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""
 
 MEMORY_OF_THE_HIDDEN = 30.0
-"""Time in seconds in which the certainty of a thing that is not seen drops to a half."""
+"""Time in seconds in which the certainty of a thing that is not seen drops by half."""
 
 
 @dataclass(eq=False)
@@ -115,7 +115,7 @@ class Pipeline:
     found: bool = field(default=True, init=False)
     """True if the last frame shows it."""
     out_of_view: bool = field(default=False, init=False)
-    """True if it left the image above the table, and was not found since."""
+    """True if it left the image above the table, and has not been found since."""
     agreement: float = field(default=1.0, init=False)
     """Share of its visible points that agree with the last frame."""
     visible: float = field(default=1.0, init=False)

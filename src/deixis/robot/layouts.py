@@ -54,7 +54,8 @@ HELD_WEIGHT = 0.5
 """Factor of the evidence of relations that hold, since those of one thing in its place depend on each other."""
 
 OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
-"""Prior standard deviation in metres of the offset between two things, and the number of tables that it counts as."""
+"""Prior standard deviation in metres of the offset between two things, and the weight of this prior as a number of
+tables."""
 
 MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
 """Minimum height in metres at which a thing must rest on another one, and the error of the height of that one."""
