@@ -700,7 +700,7 @@ class Pipeline:
         return bool(np.ptp(places, axis=0).max() < 2 * self.settings.still)
 
     def settle(self) -> None:
-        """Come to rest at the mean of the last places; the time since when it is there is kept if it did not move."""
+        """Come to rest at the mean of the last places; keep the time of its arrival if it did not move."""
         pose = self.pose.copy()
         pose[:3, 3] = np.mean([place for _, place in self._places], axis=0)
         if np.linalg.norm(pose[:3, 3] - self._rest[:3, 3]) > 2.5 * self.settings.still:

@@ -268,7 +268,7 @@ class _Plan:
 def _plan_boxes(
     script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], seed: int, time_limit: float
 ) -> _Plan:
-    """Boxes that satisfy the script, of the size of the things that will fill them."""
+    """Return boxes that satisfy the script, of the size of the things that will fill them."""
     ontology = script.ontology
     objects = sized_objects(script, graph)
     lying = lying_across(graph, objects, ontology.kinds)

@@ -32,7 +32,7 @@ PRIOR = shipped_models()
 
 
 def alike_left(count: int, seed: int = 3) -> list[SaidPairs]:
-    """Scenes of six boxes in which 'left' is said of the two that are most alike in size, one left of the other."""
+    """Return scenes of six boxes in which 'left' is said about the two of the most similar sizes, side by side."""
     rng, lessons = np.random.default_rng(seed), []
     for _ in range(count):
         low, sides = rng.uniform(0, 10, (6, 2)), rng.uniform(0.1, 2.0, (6, 1))
