@@ -74,7 +74,7 @@ def export_episodes(board: Blackboard) -> str:
 def import_episodes(board: Blackboard, text: str, file: str) -> int:
     """Add exported fluents to a blackboard: all of them or, if one is refused, none.
 
-    Times are moved to the origin of the blackboard. Ids of the file are never given again.
+    Times are moved to the origin of the blackboard. Ids of the file are never reused.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """Follow the things on a table from frame to frame, with what is new, what moves and what is gone.
 
-The table at rest is a reference image of depth, colour and owner of every pixel. A thing of which enough pixels are
-unchanged rests, which costs nothing more. A thing that has left its place is followed by its particle filter. Pixels
-that changed and stay as they are, and that are neither a hand's nor a moving thing's, are segmented, and become new
-things or the places of things that were lost.
+The table at rest is a reference image of depth, colour and owner of every pixel. A thing rests while enough of its
+pixels are unchanged; this costs nothing more. A thing that has left its place is followed by its particle filter.
+Pixels that changed and stay as they are, and that are neither a hand's nor a moving thing's, are segmented, and become
+new things or the places of things that were lost.
 """
 
 from __future__ import annotations

@@ -230,8 +230,8 @@ class LayingModel:
     def _still_coming(self, there: Sequence[int], left: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return the probability that each step that is left is still to come.
 
-        A step that was only stated, without examples, is expected. A step after which others have been laid that it
-        should come before was probably left out.
+        A step that was only stated, without examples, is expected. A step was probably left out if steps that it should
+        precede have been laid already.
         """
         examples = len(self._examples)
         seen = self._present[left]

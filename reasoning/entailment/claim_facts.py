@@ -1,7 +1,7 @@
 """Facts that claims imply: the pairs of a row, of a superlative, of an arrangement, and of what is between two others.
 
-A claim has no place in the closure of relations between pairs. The facts that it implies have: they are added to the
-stated ones, with the claim's place in the script, so that derivations and conflicts name it.
+A claim has no place in the closure of relations between pairs. The facts that it implies do have one: they are added to
+the stated facts, with the claim's place in the script, so that derivations and conflicts name it.
 """
 
 from __future__ import annotations

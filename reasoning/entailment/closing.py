@@ -282,7 +282,7 @@ def picture_of(known: Codes) -> NDArray[np.float64]:
 def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
     """Return a picture of the objects of a connected group, in its order, by closed orders without open choices.
 
-    The boxes have shape (n, 2, 3): least and greatest corner.
+    The boxes have shape (n, 2, 3): minimum and maximum corner.
 
     Parameters
     ----------

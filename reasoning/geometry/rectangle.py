@@ -121,7 +121,7 @@ class SceneRelations:
     vocabulary: Relations
     nodes: tuple[str, ...]  # (n,)
     names: NDArray[np.int8]  # (n, n): relation indices, -1 on the diagonal
-    boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner
+    boxes: NDArray[np.float64] | None = None  # (n, 2, d): minimum and maximum corner
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     poses: Poses | None = None  # of the n objects; None: axes along the sides of the boxes, no fronts
 

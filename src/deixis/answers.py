@@ -1,8 +1,8 @@
 """Base class of results that can be shown as JSON, text, a data frame, a picture, and in a notebook.
 
 Each type of answer derives from :class:`Answer`. Its rendering is registered by the name of its class in
-:mod:`deixis.report.renderers`, which is looked up when a method is called: so no module of the reasoning imports the
-command line, and no answer imports matplotlib before it is drawn.
+:mod:`deixis.report.renderers`, which is looked up when a method is called: so no reasoning module imports the command
+line, and no answer imports matplotlib before it is drawn.
 """
 
 from __future__ import annotations

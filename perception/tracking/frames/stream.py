@@ -87,9 +87,9 @@ class FileSource:
 class FolderSource:
     """Clouds in a folder, in the order of their names, as a recording or while it grows.
 
-    With a file ``times.csv`` (columns ``file`` and ``seconds``) the folder is a recorded sequence, as
-    :func:`recording` writes it. Without one, times follow from ``rate``; while the folder grows, they are those at
-    which the files were written.
+    With a file ``times.csv`` (columns ``file`` and ``seconds``) the folder is a recorded sequence, as :func:`recording`
+    writes it. Without one, times follow from ``rate``; while the folder grows, they are the times at which the files
+    were written.
 
     Parameters
     ----------

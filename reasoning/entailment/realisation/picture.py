@@ -60,7 +60,7 @@ class GivenUp:
 class Picture:
     """A box for every object, and the facts that it does not satisfy.
 
-    ``boxes`` (n, 2, 2) are least and greatest corners in metres, x to the right, y away from the viewer; they are
+    ``boxes`` (n, 2, 2) are minimum and maximum corners in metres, x to the right, y away from the viewer; they are
     checked to satisfy every firm fact. ``overlapping`` are pairs that overlap in part. ``named_otherwise`` are denials
     that hold by the atoms of such a pair, but not by its exact relation. ``finished`` is False if the time ran out
     before all preferences were tried.

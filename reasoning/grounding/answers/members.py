@@ -32,7 +32,7 @@ def with_members(found: Grounding, evidence: Evidence) -> Grounding:
     """Return a grounding with the members of the groups of unknown number.
 
     The match of a group is its most probable member, whose probability is that of being a member. It is decided if the
-    membership of all things is.
+    membership of every thing is decided.
 
     Parameters
     ----------

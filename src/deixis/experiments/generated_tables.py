@@ -52,7 +52,7 @@ RING = ("top", "top_right", "right", "bottom_right", "bottom", "bottom_left", "l
 class GeneratedTable:
     """Perceived boxes (n2), m facts about n1 objects, and the truth: which box each object is."""
 
-    boxes: NDArray[np.float64]  # (n2, 2, 2): least and greatest corner, metres
+    boxes: NDArray[np.float64]  # (n2, 2, 2): minimum and maximum corner, metres
     ends: NDArray[np.int64]  # (m, 2): subject and object
     words: NDArray[np.int64]  # (m,): index of the stated exact relation
     off: NDArray[np.bool_]  # (m,): True if it was replaced by a neighbouring one

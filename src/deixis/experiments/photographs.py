@@ -63,7 +63,7 @@ class Photograph(NamedTuple):
     """The description of n objects, and the boxes that they refer to, in the order of the description's nodes."""
 
     description: RelationGraph
-    boxes: NDArray[np.float64]  # (n, 2, 2): least and greatest corner, pixels, y up
+    boxes: NDArray[np.float64]  # (n, 2, 2): minimum and maximum corner, pixels, y up
 
 
 def photographs_folder() -> Path | None:

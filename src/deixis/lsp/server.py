@@ -54,7 +54,7 @@ class LayoutServer(LanguageServer):
     def document(self, uri: str) -> Document | EnglishText:
         """Return the document that an editor shows; the same object until its text changes.
 
-        A plain text, or a file ``NAME.txt``, is English.
+        Plain text, or a file ``NAME.txt``, is English.
 
         Parameters
         ----------

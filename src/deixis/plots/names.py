@@ -135,8 +135,8 @@ def write_names(
     """Write every thing's label where it covers no other name, and as little else as possible.
 
     A name that does not fit on its thing stands beside it. A line joins the two where they are apart; it crosses no
-    other thing and no name. Where things are very many, or there is no room, a name is left out, and the axis says how
-    many are. This fixes the layout of the figure.
+    other thing and no name. Where things are very many, or there is no room, names are left out, and the axis gives
+    their number. This fixes the layout of the figure.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ def _cheapest(
 ) -> NamePlace | None:
     """Return the cheapest place that covers no name and no leader, and whose own leader crosses no thing and no name.
 
-    What it covers of other things and points costs too. ``outline`` is that of the thing itself; other things, names
+    Covering other things or points costs too. ``outline`` is that of the thing itself; other things, names
     and points are boxes in pixels of shape (n, 4).
     """
     bears = outline.shared(others) >= 0.98 * outline.area

@@ -1,6 +1,6 @@
 """Layouts over several tables: the text that describes one, and which relations hold and how things lie on tables.
 
-A layout that a text described on one table, and that lay on others too, is one concept. What its tables taught is
+A layout that a text described on one table, and that was laid on other tables too, is one concept. Its tables are
 counted (:mod:`deixis.learning.layouts.experience`) and kept with the lessons in the memory.
 """
 

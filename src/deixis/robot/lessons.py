@@ -1,7 +1,7 @@
 """Lessons of a robot: tables on which a teacher described a layout, what each taught, and what still waits.
 
 A decided match is learned at once. The others wait for an answer, for a person who points, or for what further tables
-teach of the layout and of its things. They are then learned in hindsight, because a lesson keeps its table.
+teach about the layout and its things. They are then learned in hindsight, because a lesson keeps its table.
 """
 
 from __future__ import annotations

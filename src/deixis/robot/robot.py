@@ -649,7 +649,7 @@ class Robot(Closing):
     def _sighting(self, one: ExpectedObject) -> Sighting:
         """Return how an expected object looks in the present scene.
 
-        Things that may be any of several objects of one sentence (*two forks*) are those of each.
+        Things that may be any of several objects of one sentence (*two forks*) are listed for each of these objects.
         """
         knowledge = self.knowledge()
         scene = knowledge.recognised(self.scene)

@@ -27,7 +27,7 @@ from deixis.reasoning.qualitative.networks.realisation.pair_types import (
     Piece,
 )
 
-Boxes = NDArray[np.float64]  # (n, 2, 2): least and greatest corner, x and y
+Boxes = NDArray[np.float64]  # (n, 2, 2): minimum and maximum corner, x and y
 Equation = dict[int, int]  # factor by coordinate; the sum is zero
 
 POLYGON = 12

@@ -3,8 +3,8 @@
 A detected thing is a true thing if most of its points are of that thing and the two share at least half of their points
 (intersection over union). A true thing is named right if it was detected and has its name without a number; extra
 things are not scored. A mistake is found if its kind and the true things that it is about are the same; one that is
-reported otherwise counts as missed, and the report as false. Everything that is said counts, and where the robot names
-no layout it has found nothing.
+reported otherwise counts as missed, and the report as false. All reported mistakes count. Where the robot names no
+layout, it has found no mistake.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Tables with known mistakes: a layout is laid by the simulator, and then some of its things are tampered with.
 
-Only things that support no other thing are missing, displaced, swapped or turned, so that each mistake is one. A
+Only things that support no other thing are missing, displaced, swapped or turned, so that each counts as one mistake. A
 displaced thing clearly violates a fact of its layout by its new place; a turned one violates none by its box's place;
 two swapped things are of different kinds, fit in each other's place, and clearly violate a fact there; an extra
 thing stands free. Nothing lies across other things by mistake.

@@ -77,7 +77,8 @@ class ImaginedTable:
 class NoTable:
     """Firm facts that no table satisfies; with ``sizes``, none on which these things have their usual sizes.
 
-    ``minimal`` where without any one of them there is such a table. ``reason``: in words, where they are few.
+    ``minimal`` is True if there is such a table without any one of them. ``reason`` is the reason in words if they are
+    few.
     """
 
     facts: tuple[Fact, ...]

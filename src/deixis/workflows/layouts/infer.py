@@ -46,7 +46,7 @@ class Inferred:
 class Inference(Answer):
     """Facts that follow from a script without being stated, or the conflict in it.
 
-    Where the time limit struck, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
+    If the time limit was reached, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
     if further facts may follow.
 
     Examples

@@ -186,8 +186,8 @@ def lay_script(
 ) -> LaidScript:
     """Lay a table that satisfies every firm fact of a script, with things of their kinds, varied from the seed.
 
-    Everything is turned a little off its axis, unless a fact would no longer hold. What is a table is the table's top
-    itself, and everything is on it, unless the script has it elsewhere.
+    Everything is turned a little off its axis, unless a fact would no longer hold. An object that is a table is the
+    table top itself, and everything stands on it unless the script places it elsewhere.
 
     Parameters
     ----------
