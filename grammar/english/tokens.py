@@ -40,7 +40,7 @@ _CODES = re.compile(
     r"\((?:[A-Za-z]{1,6}\.?\s*)?\d[\w./-]*\)"
     r"|(?<=\w)\s\d+\s?[\u2013-]\s?\d+(?=[\s,;.])(?!\s*(?:cm|mm|m|inch|feet|ft)\b)"
 )
-"""Codes of things, which say nothing of places: *(inv. 112)*, *samples 1\u20136*."""
+"""Codes of things, which say nothing about places: *(inv. 112)*, *samples 1\u20136*."""
 _IN_BRACKETS = re.compile(r"\(([^()\n]{3,60})\)")
 _CAPITAL = r"[A-Z][\w'\u2019]*"
 _TITLE = rf"{_CAPITAL}(?:\s+(?:(?:an?|the|of|and|on|in|at|by|to|for|with|from|under|over|behind|near)\s+)*{_CAPITAL})+"
@@ -57,7 +57,7 @@ _TITLES = re.compile(
     + r"|(?<=\bcalled)\s+"
     + _TITLE
 )
-"""Titles of works and names of things, whose words say nothing of places: *my copy of Under the Volcano*."""
+"""Titles of works and names of things, whose words say nothing about places: *my copy of Under the Volcano*."""
 _DEPICTED = re.compile(
     r"(?<=\w)\s+of\s+(?:an?|two|three|some)\s+(?:[\w-]+\s+){1,2}?"
     r"((?:on|in|under|behind|beside|above|near|over|at|with)\s+an?\s+(?:[\w-]+\s+){0,2}?[\w-]+"

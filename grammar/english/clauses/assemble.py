@@ -345,7 +345,7 @@ class Assembly:
                 bare = replace(other, predicates=())
                 self.clauses.append(Clause(bare, other.predicates, other.span, guesses=guesses))
             else:
-                misunderstood(other.span, "nothing is said of this", "say where it is")
+                misunderstood(other.span, "nothing is said about this", "say where it is")
         if self.front:
             span = (self.front[0].span[0], self.front[-1].span[1])
             front, self.front = self.front, ()
@@ -358,7 +358,7 @@ class Assembly:
             start = self.raw.start
             misunderstood((start, self.raw.end), "a condition without what it is a condition of")
         if not self.clauses and fragment is None and self.viewpoint is None and not notes.get():
-            misunderstood((self.raw.start, self.raw.end), "this says nothing of where a thing is")
+            misunderstood((self.raw.start, self.raw.end), "this says nothing about where a thing is")
         guesses = frozenset() if fragment is None else self.guesses_of_fragments.get(fragment.span, frozenset())
         return Found((*self.supposed, *self.clauses), fragment, self.viewpoint, guesses)
 
@@ -477,7 +477,7 @@ class Assembly:
                 return
             if self.clauses or phrase.pronoun in _PEOPLE:
                 if phrase.head or phrase.adjectives or phrase.members:
-                    misunderstood(phrase.span, "nothing is said of this", "say where it is")
+                    misunderstood(phrase.span, "nothing is said about this", "say where it is")
                 return
         more, self.front = (*self.front, *more), ()
         if more:
@@ -565,7 +565,7 @@ class Assembly:
         return False
 
     def _said(self, built: Built, said: tuple[Said, ...], link: str, span: Span, mood: Mood) -> None:
-        """Take in predicates without a subject: they are said of the subject of the clause before."""
+        """Take in predicates without a subject: they are said about the subject of the clause before."""
         last = self.clauses[-1] if self.clauses else None
         past = last is not None and last.past
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
@@ -602,7 +602,7 @@ class Assembly:
         )
 
     def _of_the_thing(self, verb: Verb, subject: Noun) -> tuple[Verb, Noun]:
-        """Return *I have a lamp on the desk*, *you keep it under the mug* as said of the lamp."""
+        """Return *I have a lamp on the desk*, *you keep it under the mug* as a statement about the lamp."""
         thing = verb.thing
         assert thing is not None
         phrase = thing.phrase
@@ -753,7 +753,7 @@ def _turns_over(verb: Verb) -> bool:
 
 
 def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple[NounPhrase, tuple[Predicate, ...]]]]:
-    """Separate *with G on the right* from what is said of the subject: it says where G is."""
+    """Separate *with G on the right* from what is said about the subject: it says where G is."""
     kept, absolute = [], []
     for predicate in predicates:
         phrase = predicate.arguments[0] if predicate.relation == "with" and predicate.arguments else None

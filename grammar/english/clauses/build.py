@@ -684,7 +684,7 @@ def _is_second_content(vessels: NounPhrase, other: NounPhrase) -> bool:
 
 
 def flat(verb: Verb) -> list[Predicate]:
-    """Return what a verb says of its subject as one list; alternatives after *or* are left out.
+    """Return what a verb says about its subject as one list; alternatives after *or* are left out.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Hold the pieces of a clause while the parser runs: nouns and verbs with what is said of them."""
+"""Hold the pieces of a clause while the parser runs: nouns and verbs with what is said about them."""
 
 from __future__ import annotations
 

@@ -180,7 +180,7 @@ def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_repeated_predicates(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *the ruler is in the case, and so is the pen* with what is said of the ruler said of the pen."""
+    """Return *the ruler is in the case, and so is the pen* with the predicate of the ruler repeated for the pen."""
     for i, chunk in enumerate(chunks):
         if chunk.type not in JOINT_TYPES | {"UNKNOWN"}:
             continue

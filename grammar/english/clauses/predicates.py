@@ -41,7 +41,7 @@ _KEEPING = frozenset({"keep", "leave", "stay", "remain"})
 _REACHING = frozenset({"get", "come", "listen", "ask", "look"})
 """Verbs after which *at*, *to* and *for* name no place of the subject."""
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
-"""Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
+"""Relations that, without an object, are to the thing that *with* describes: *a dish with the swabs inside*."""
 _COVERING = frozenset(
     {
         "spread",
@@ -293,7 +293,7 @@ def with_support(group: VerbGroup, said: tuple[Said, ...]) -> tuple[Said, ...]:
     Returns
     -------
     tuple of Said
-        Places in which *it hangs over the fire on a chain* says of the subject, not of the fire, that it is on a chain.
+        Places in which *it hangs over the fire on a chain* says that the subject, not the fire, is on a chain.
     """
     if group.lemma in _HANGING and said and len(said[-1].predicates) > 1:
         places = said[-1].predicates  # 'it hangs above it from a nail'
@@ -378,7 +378,7 @@ def transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, .
     Returns
     -------
     tuple of Predicate
-        What the verb with its object says of the subject; empty if it says no place.
+        What the verb with its object says about the subject; empty if it says no place.
     """
     span = union(span, things.phrase.span)
     phrase = things.phrase
@@ -515,7 +515,7 @@ def checked(found: list[Predicate], phrase: NounPhrase | None = None) -> list[Pr
     Returns
     -------
     list of Predicate
-        Predicates without participles that say nothing of a place, which are noted as misunderstood.
+        Predicates without participles that say nothing about a place, which are noted as misunderstood.
     """
     kept = []
     for predicate in found:

@@ -170,7 +170,7 @@ class _Said:
 
 
 def _predicates(sentence: Sentence) -> Iterator[tuple[NounPhrase | None, Predicate, bool]]:
-    """Yield the predicates of a sentence with what they are said of, and False for those of a denied clause."""
+    """Yield the predicates of a sentence with what they are said about, and False for those of a denied clause."""
     for clause in sentence.clauses:
         if clause.subject is not None:
             yield from _restrictions(clause.subject)

@@ -98,7 +98,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
 
 
 def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
-    """Return the chunks with what parentheses say of the noun before them at the end, as a phrase of its own.
+    """Return the chunks with what parentheses say about the noun before them at the end, as a phrase of its own.
 
     *Set the knife (with its blade to the left) beside the plate* is read as *set the knife beside the plate; the knife
     with its blade to the left*. A name in parentheses, or a word said in passing, is left out.
@@ -324,7 +324,7 @@ def _sought_in_vain(chunks: list[Chunk], at: int) -> _Run | None:
 
 
 def _caused(chunks: list[Chunk], at: int) -> _Run | None:
-    """Find what someone lets others do: *the owner had it moved*, which says of no thing where it is."""
+    """Find what someone lets others do: *the owner had it moved*, which states the place of no thing."""
     if chunks[at].type != "NP" or type_at(chunks, at + 1) != "TVERB":
         return None
     types = [type_at(chunks, at + k) for k in range(4)]
@@ -585,7 +585,7 @@ def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_parts_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
-    """Put what is said of a part before the verb at the end: *the tweezers, points to the left, lie along the edge*."""
+    """Move the description of a part to the end: *the tweezers, points to the left, lie along the edge*."""
     for i in range(1, len(chunks) - 3):
         subject, part = chunks[i - 1], chunks[i + 1]
         if [type_at(chunks, i + k) for k in (-1, 0, 1)] != ["NP", "COMMA", "NP"] or not subject.value.head:
@@ -785,7 +785,7 @@ def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
-    """End the clause of a note before what is said of a part: *rear left corner, lid closed*."""
+    """End the clause of a note before what is said about a part: *rear left corner, lid closed*."""
     for i, chunk in enumerate(chunks):
         before = [c.type for c in chunks[:i] if c.type != "ADVERB"][-2:]
         beside = type_at(chunks, i + 1) == "NP" and before in (["PREP", "NP"], ["OF", "NP"])
@@ -847,7 +847,7 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *both to the right of the plate* after a comma as said of the things before, not of the subject."""
+    """Return *both to the right of the plate* after a comma as a statement about the things before."""
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         whole = chunk.type == "ADVERB" and chunk.value in ("both", "all", "each")

@@ -1,4 +1,4 @@
-"""Turn parsed sentences into facts: what each clause states of which objects, and with what qualification."""
+"""Turn parsed sentences into facts: what each clause states about which objects, and with what qualification."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ LABEL = re.compile(
 )
 """Words after a label of what follows: *towel first: fold it*."""
 ITEM_LABEL = re.compile(r"([A-Z][\w'\u2019-]*(?:\s+[\w'\u2019-]+){0,2})\s*:\s+\w")
-"""Label of an item and what is said of it: *Soup spoon: a large and round spoon.*"""
+"""Label of an item and what is said about it: *Soup spoon: a large and round spoon.*"""
 ABOUT_IT = re.compile(r"\s*(?:it|they)\s", re.IGNORECASE)
 MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
 """Properties that a part and its whole need not share."""
@@ -411,7 +411,7 @@ class Discourse(Statements):
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
 
     def _inserted_condition(self, subject: NounPhrase | None, predicates: tuple[Predicate, ...]) -> str | None:
-        """Return the condition between a subject and what is said of it."""
+        """Return the condition between a subject and what is said about it."""
         if subject is None or not predicates or predicates[0].span[0] < subject.span[0]:
             return None
         return inserted_condition(self.text[subject.span[0] : predicates[-1].span[1]])

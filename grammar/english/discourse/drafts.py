@@ -30,7 +30,7 @@ SUPPOSED = {
 RARE = frozenset({"hardly", "rarely", "seldom", "scarcely"})
 
 NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to", "like"})
-"""Relations of the parser that say nothing of where a thing is."""
+"""Relations of the parser that say nothing about where a thing is."""
 
 
 @dataclass(frozen=True, slots=True)
