@@ -61,6 +61,7 @@ PHRASES = {
     r"learnt|whilst": "learned, while",
     r"(?:its|and the|or the) like(?=[ .,;:)]|$)": "similar words, or the whole list",
     r"(?:return|yield|compute|draw|write|do)s? the same (?:as|of|for|without|with)": "name what it is",
+    r"(?:says?|said|saying) (?:(?:nothing|something|little|more) )?of(?! what| which|[:*])": "about",
     r"tells? (?:nothing|little|something)": "carries no information, or states nothing",
 }
 """Wordings that stand in the way of a reader, as regular expressions, and what to write instead."""

@@ -68,7 +68,7 @@ def test_a_fact_that_counts_nothing_teaches_nothing() -> None:
 
 @pytest.mark.parametrize(("word", "model"), [("near", "nearness"), ("behind", "vertical"), ("inside", "containment")])
 def test_every_graded_word_can_be_learned(word: str, model: str) -> None:
-    """Fit a word to scenes in which it is said of two boxes that fit it less than five others."""
+    """Fit a word to scenes in which it is said about two boxes that fit it less than five others."""
     rng, lessons = np.random.default_rng(4), []
     for _ in range(8):
         low = rng.uniform(0, 10, (5, 3))
