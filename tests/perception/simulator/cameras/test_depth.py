@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -156,7 +158,8 @@ def test_impossible_sensors_are_an_error() -> None:
         ("missing", np.nan),
         ("colour_noise", 300),
     ):
+        setting: dict[str, Any] = {name: value}
         with pytest.raises(SimulationError, match=f"^`{name}` must be from 0 to .*, got {value:g}$"):
-            DepthSensor(**{name: value})
+            DepthSensor(**setting)
     with pytest.raises(SimulationError, match="grazing"):
         DepthSensor(grazing=(1.0, 0.5))
