@@ -343,8 +343,8 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
-        said = self.text[self.references.start : self.end]
-        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(said) or EVENT.match(said)
+        text = self.text[self.references.start : self.end]
+        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(text) or EVENT.match(text)
         if limit is not None and self.how.condition is None:
             self.how = replace(self.how, condition=limit[0].strip(" ,."))
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
@@ -418,12 +418,12 @@ class Discourse(Statements):
 
     def _is_past(self, clause: Clause) -> bool:
         """Return True for what was so, and need not be so now: *my mother always kept it here*."""
-        said = self.text[slice(*clause.span)]
-        if self.story or NOW.search(said):
+        wording = self.text[slice(*clause.span)]
+        if self.story or NOW.search(wording):
             return False
-        whole = self.text[self.references.start : self.end]
-        ended = PAST_TIME.search(whole) is not None and PRESENT.search(said) is None
-        return clause.past or ended or HABIT.search(said) is not None
+        text = self.text[self.references.start : self.end]
+        ended = PAST_TIME.search(text) is not None and PRESENT.search(wording) is None
+        return clause.past or ended or HABIT.search(wording) is not None
 
     def _contrast(self, clause: Clause, subject: NounPhrase, sentence: int) -> None:
         for negated in (False, True):
