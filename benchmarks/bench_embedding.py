@@ -1,4 +1,4 @@
-"""Measure an embedding learnt from procedural shapes, beside its own descriptors, on held-out kinds and meshes.
+"""Measure an embedding learned from procedural shapes, beside its own descriptors, on held-out kinds and meshes.
 
 A kind is a family of solids (vessels, closed solids, sheets, stemmed vessels, two solids joined) with parameters drawn
 once; things of a kind vary all of them. The embedding is the linear map of a discriminant analysis (Fisher 1936) over
@@ -211,7 +211,7 @@ def vectors(views: Views) -> Array:
     return np.stack([np.concatenate([f[0], 2 * u.mean(axis=0), 2 * u.std(axis=0)[:-whole]]) for f, u in pairs])
 
 
-def learnt(rows: Array, kinds: NDArray[np.str_], ridge: float, size: int) -> tuple[Array, Array]:
+def learned(rows: Array, kinds: NDArray[np.str_], ridge: float, size: int) -> tuple[Array, Array]:
     """Return mean (d,) and map (d, size) of the discriminant analysis."""
     middle = rows.mean(axis=0)
     _, number = np.unique(kinds, return_inverse=True)
@@ -320,7 +320,7 @@ def main() -> None:
             sets |= {f"meshes, {count} views": (meshes, count, 10) for count in (3, 24)}
         print(f"{len(taught.clouds)} views of {2 * kinds // 3} kinds teach; accuracy and AUROC of the unknown")
         rows = vectors(taught)
-        maps = {size: learnt(rows, taught.categories, ridge, size) for size in DIMENSIONS}
+        maps = {size: learned(rows, taught.categories, ridge, size) for size in DIMENSIONS}
         if options.write:
             middle, kept = maps[DIMENSIONS[1]]
             np.savez(options.write, mean=middle.astype(np.float32), map=kept.astype(np.float32))

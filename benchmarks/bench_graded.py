@@ -3,7 +3,7 @@
 Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.grounding.evidence.facts.facts`); the
 one-to-one map with the largest sum is found exactly. Prints the share of objects named right, mean over images, each a
 mean over random node orders. ``shipped`` words and sizes do not depend on these images;
-``anonymous names`` are names that say nothing of the kinds. ``learned`` words, and sizes by
+``anonymous names`` are names that say nothing about the kinds. ``learned`` words, and sizes by
 the names in the descriptions, are fitted by cross-validation over images: the test fold is never seen. ``--halves``
 adds the shares of two fixed halves of the images, development and confirmation; the last choices of form, and the
 strengths of the priors of learned models, were made on the first half alone.
@@ -89,7 +89,7 @@ def crisp_shares(images: Sequence[Photograph], orders: int) -> NDArray[np.float6
 
 
 def anonymous(image: Photograph) -> Photograph:
-    """Return a photograph whose described objects have names that say nothing of their kinds."""
+    """Return a photograph whose described objects have names that say nothing about their kinds."""
     description, boxes = image
     names = tuple(f"x{number}" for number in range(len(description.nodes)))
     return Photograph(replace(description, nodes=names, kinds=(None,) * len(names)), boxes)

@@ -269,14 +269,14 @@ def forest(
         local, form = views.described[UPRIGHT.name], views.described[FORM.name]
         return np.stack([np.concatenate([form[p][0], local[p].mean(axis=0), local[p].std(axis=0)]) for p in places])
 
-    learnt, seen, named = rows(taught), rows(asked), views.categories[taught]
-    trees = RandomForestClassifier(TREES, random_state=0).fit(learnt, named)
+    learned, seen, named = rows(taught), rows(asked), views.categories[taught]
+    trees = RandomForestClassifier(TREES, random_state=0).fit(learned, named)
     truth = np.searchsorted(trees.classes_, views.categories[asked])
     known = -trees.predict_proba(seen)
     unknown = np.full_like(known, np.inf)
     for number, category in enumerate(trees.classes_):
         own, others = truth == number, named != category
-        fewer = RandomForestClassifier(TREES, random_state=0).fit(learnt[others], named[others])
+        fewer = RandomForestClassifier(TREES, random_state=0).fit(learned[others], named[others])
         unknown[np.ix_(own, np.arange(len(trees.classes_)) != number)] = -fewer.predict_proba(seen[own])
     return Answers(truth, known, unknown)
 

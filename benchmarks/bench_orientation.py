@@ -56,7 +56,7 @@ TURNED_AROUND = 0.2
 """Share of the cutlery of place settings that lies the wrong way round."""
 
 SURE = 0.95
-"""Probability from which a front counts in grounding and checks."""
+"""Minimum probability at which a front counts in grounding and checks."""
 
 Array = NDArray[np.float64]
 

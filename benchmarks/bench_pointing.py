@@ -93,7 +93,7 @@ def main() -> None:
     parser.add_argument("--gestures", type=int, default=1000)
     parser.add_argument("--first-seed", type=int, default=0, help="seed of the first table")
     parser.add_argument("--noise", type=float, default=1.0, help="factor of all standard deviations")
-    parser.add_argument("--sure", type=float, default=aim.SURE, help="probability from which on a thing is decided")
+    parser.add_argument("--sure", type=float, default=aim.SURE, help="minimum probability of a decided thing")
     parser.add_argument("--no-names", action="store_true", help="leave out the usual sizes of what a name means")
     with recorded(parser) as arguments:
         seed = arguments.first_seed

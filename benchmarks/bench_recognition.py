@@ -203,10 +203,12 @@ def constants() -> None:
     for name, describe in {"spin_image_roots": recognising.SPIN_IMAGE_ROOTS.describe, **named}.items():
         icds = [category.width(over_things=True).icd or np.nan for category in taught(6, 2, describe).values()]
         print(f"PRIOR_SPREADS: {name} {np.median(icds):.3g}", flush=True)
-    learnt = [
+    learned = [
         [(name, [recognising.COLOUR.describe(cloud)]) for name, cloud in found_on_table(seed)] for seed in TABLES[0]
     ]
-    icds = [one.intra_category_distance or np.nan for one in _taught((recognising.COLOUR,), learnt, DEFAULT).categories]
+    icds = [
+        one.intra_category_distance or np.nan for one in _taught((recognising.COLOUR,), learned, DEFAULT).categories
+    ]
     print(f"PRIOR_SPREADS: colour {np.median(icds):.3g}, of what is found on laid tables", flush=True)
     forms = [form_parts(view) for kind in KINDS for seed in range(4) for view in views_of_thing(kind, seed, 2)]
     for name in PARTS:
@@ -324,11 +326,11 @@ def tables() -> None:
 
 def _taught(
     comparison: recognising.Comparison,
-    learnt: Sequence[Sequence[tuple[str, list[Descriptors]]]],
+    learned: Sequence[Sequence[tuple[str, list[Descriptors]]]],
     settings: RecognitionSettings,
 ) -> JointRecogniser:
     """Return a calibrated recognition of the things of some tables."""
-    views = [(name, f"{place} {name}", rows) for place, table in enumerate(learnt) for name, rows in table]
+    views = [(name, f"{place} {name}", rows) for place, table in enumerate(learned) for name, rows in table]
     categories = [
         tuple(
             InstanceCategory.of(wanted, [(key, rows[place]) for name, key, rows in views if name == wanted])

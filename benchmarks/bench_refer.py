@@ -32,7 +32,7 @@ from deixis.workflows.descriptions.refer import MAX_QUESTIONS, read_description,
 BINS = 10
 
 ENOUGH = 0.9
-"""Probability of an answer from which on the shorter of the two dialogues asks no more questions."""
+"""Probability of an answer at which the shorter of the two dialogues asks no more questions."""
 
 
 def main() -> None:

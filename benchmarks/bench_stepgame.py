@@ -51,7 +51,7 @@ def stories(file: Path) -> list[tuple[list[str], str, str, str]]:
 
 
 def steps(sentence: str) -> list[Step]:
-    """Return the unit step of a sentence: what it says of two agents is one step along each axis that it names.
+    """Return the unit step of a sentence: what it says about two agents is one step along each axis that it names.
 
     The place of an agent in a region without a landmark (*Y is on the left and U is on the right*) is taken relative to
     the other agent of the sentence.

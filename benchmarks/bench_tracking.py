@@ -54,7 +54,7 @@ FIRST, NEAR, CLOSE = 0.04, 0.05, 0.01
 """Distances in metres: of a track from the thing that gets it, of a kept one, and of a right one."""
 
 SETTLING = 1.0
-"""Time in seconds from which a thing that lies in view must be tracked."""
+"""Minimum time in seconds at which a thing that lies in view must be tracked."""
 
 LOWEST, HIGHEST = 0.004, 0.5
 """Heights above the table in metres between which the filters of the library get points."""

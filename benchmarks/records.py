@@ -38,13 +38,13 @@ KEPT = 5
 """Number of recordings that a file keeps."""
 
 BUSY = 0.25
-"""Programs that run beside the benchmark, per core, from which on times are left out."""
+"""Number of other running programs per core above which times are left out."""
 
 RUNNING = Path("/proc/loadavg")
 """Linux's file with the number of programs that run now, the reader included."""
 
 MEASURES_OF_A_CASE = 1.5
-"""Minimum mean number of figures named ``case: measure`` of a case, from which on they form a table."""
+"""Minimum mean number of figures named ``case: measure`` per case at which they form a table."""
 
 NORMAL_95 = 1.96
 """Half of the 95 per cent interval of a normal distribution, in standard deviations."""

@@ -1,4 +1,4 @@
-"""Read told activities, *first the plate, then the forks*, and files of learned ones.
+"""Read described activities, *first the plate, then the forks*, and files of learned ones.
 
 >>> [[str(item) for item in group] for group in read_activity("First the plate, then two forks. Finally the knife.")]
 [['plate'], ['fork (2)'], ['knife']]
@@ -75,7 +75,7 @@ def read_activity(text: str) -> list[list[DescribedItem]]:
     Returns
     -------
     list of list of DescribedItem
-        Groups of things; nothing is said of the order within a group.
+        Groups of things; nothing is said about the order within a group.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def read_activity(text: str) -> list[list[DescribedItem]]:
         If a part is not understood.
     """
     if not isinstance(text, str) or not text.strip():
-        raise ActivityTextError("an activity must be a text, as in 'first the plate, then the forks'")
+        raise ActivityTextError("an activity must be a string, as in 'first the plate, then the forks'")
     groups: list[list[DescribedItem]] = []
     for clause in _BREAK.split(text):
         rest = _LEAD.sub("", clause.strip())
@@ -229,7 +229,7 @@ def _activity(entry: Any) -> Activity:
     missing = [key for key in ("name", "examples", "steps", "present", "counts") if key not in entry]
     _require(not missing, f"the key '{', '.join(missing)}' is missing")
     name, examples = entry["name"], entry["examples"]
-    _require(isinstance(name, str) and bool(name.strip()), f"'name' must be a text, got {json_type(name)}")
+    _require(isinstance(name, str) and bool(name.strip()), f"'name' must be a string, got {json_type(name)}")
     _require(_is_whole(examples, 1), "'examples' must be a whole number of at least 1")
     lists = {key: entry.get(key, []) for key in ("steps", "present", "counts", "layings")}
     for key, value in lists.items():

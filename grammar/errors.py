@@ -83,7 +83,7 @@ class ScriptFileError(DeixisError, OSError):
 
 
 class StatementError(Exception):
-    """A problem that ends one statement; reading goes on at the next statement."""
+    """A problem that ends one statement; reading continues at the next statement."""
 
     def __init__(self, source: Source, message: str, hint: str | None = None, replacement: str | None = None) -> None:
         super().__init__(message)

@@ -16,7 +16,7 @@ STANDARD_INPUT = "-"
 
 
 def is_english(path: str | Path) -> bool:
-    """Say whether a script of a given name is a text in English.
+    """Return whether a script of a given name is a text in English.
 
     Parameters
     ----------

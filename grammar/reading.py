@@ -18,14 +18,13 @@ Span = tuple[int, int]
 class StatedFact:
     """A fact or a claim of a text, with the words that state it and what qualifies it.
 
-    ``sentence`` counts the sentences from 0. ``condition`` is the text of an *if* clause. ``past`` is True for what
-    need not hold any more, ``uncertain`` for what only may hold (*might be*). Facts with the same number as
-    ``alternative`` are a choice: one of them holds. ``quantifier`` is ``each`` where the facts of a sentence pair the
-    members of two groups. ``need_not_hold`` is True for an alternative of a choice of which none need hold.
-    ``confidence`` is the probability that the text states the fact, in [0, 1]; ``guesses`` names the steps that
-    make it doubtful (``deixis.grammar.english.confidence``).
-    ``by_handle`` is True for a direction of the handle of a tool (*the handle of the spoon points to the right*): the
-    statement of the script is about its head, which points the other way.
+    ``sentence`` counts the sentences from 0. ``condition`` is the text of an *if* clause. ``past`` is True for what may
+    no longer hold, ``uncertain`` for what only may hold (*might be*). Facts with the same number as ``alternative`` are
+    a choice: one of them holds. ``quantifier`` is ``each`` where the facts of a sentence pair the members of two
+    groups. ``need_not_hold`` is True for an alternative of a choice of which none need hold. ``confidence`` is the
+    probability that the text states the fact, in [0, 1]; ``guesses`` names the steps that make it doubtful
+    (``deixis.grammar.english.confidence``). ``by_handle`` is True for a direction of the handle of a tool (*the handle
+    of the spoon points to the right*): the statement of the script is about its head, which points the other way.
     """
 
     content: Fact | Claim

@@ -260,7 +260,7 @@ def clear_journal(folder: Path) -> None:
 
 
 def has_committed(memory: Path, store: str, id: str) -> bool:
-    """Say whether the semantic store has committed a write, by reading it only.
+    """Return whether the semantic store has committed a write, by reading it only.
 
     Parameters
     ----------

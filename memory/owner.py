@@ -106,7 +106,7 @@ class OwnerLock:
         ReadOnlyMemoryError
             If the folder cannot be written.
         MemoryWriteError
-            If the lock file cannot be made for another reason.
+            If the lock file cannot be created for another reason.
         """
         real = Path(os.path.realpath(folder))
         with _guard:

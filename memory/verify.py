@@ -2,7 +2,7 @@
 
 The semantic store is opened for reading only, and read through each of its indexes; RocksDB checks the checksum of
 every block that it reads. A memory without lessons, views or episodes lacks a store and is complete.
-At last the stores are compared: the views that lessons taught exist, in the categories that the lessons name, and the
+Finally, the stores are compared: the views that lessons taught exist, in the categories that the lessons name, and the
 lessons of the views exist; the episodes have what was said when lessons and views were taught, and experiences name
 lessons that exist. An interrupted write over several stores is completed or rolled back first.
 

@@ -151,7 +151,7 @@ MISTAKES = {
     "Extra data": "there is more text after the end of the JSON",
     "Invalid control character at": "a string must be closed by '\"' on its own line",
 }
-"""Wording for the messages of Python's reader that leave open what to do."""
+"""Replacements for messages of Python's JSON reader that do not say what to do."""
 
 
 def json_mistake(text: str, position: int, message: str) -> str:

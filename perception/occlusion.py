@@ -22,19 +22,19 @@ from deixis.perception.scene import PerceivedObject, Scene
 Array = NDArray[np.float64]
 
 MAX_HEIGHT = 0.05
-"""Greatest height in metres of things whose parts are joined."""
+"""Maximum height in metres of things whose parts are joined."""
 
 MAX_LENGTH, MAX_WIDTH = 0.27, 0.06
-"""Greatest length and width in metres of a joined thing that lies."""
+"""Maximum length and width in metres of a joined thing that lies."""
 
 MIN_HIDING_HEIGHT = 0.05
-"""Least height in metres of a thing that hides the middle of another one."""
+"""Minimum height in metres of a thing that hides the middle of another one."""
 
 FLOATING = 0.03
-"""Height in metres of the gap below a thing from which it cannot rest on what is below."""
+"""Minimum height in metres of the gap below a thing at which it cannot rest on what is below."""
 
 WIDER, WIDTH_ERROR = 1.3, 0.006
-"""Greatest ratio of the width of a joined thing to that of its wider part, and metres beyond that."""
+"""Maximum ratio of the width of a joined thing to that of its wider part, and metres beyond that."""
 
 HIDDEN_SHARE = 0.8
 """Share of the places between two parts that must be hidden."""

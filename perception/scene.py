@@ -161,7 +161,7 @@ HEADING_PARTS = ("head", "handle")
 """Parts that a heading may be measured by."""
 
 MIN_FRONT_PROBABILITY = 0.95
-"""Probability from which a measured heading counts: a handle as the front of its thing, a head as what points."""
+"""Minimum probability at which a measured heading counts: a handle as the front of its thing, a head as what points."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -227,7 +227,7 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
 
 
 def interprets() -> bool:
-    """Say whether kernels with little to do are still interpreted.
+    """Return whether kernels with little to do are still interpreted.
 
     Returns
     -------
@@ -244,7 +244,7 @@ def load_compiled() -> None:
 
 @contextmanager
 def keeping_machine_code() -> Iterator[None]:
-    """Keep the machine code of every kernel that is called in this context, so that it runs without numba later.
+    """Store the machine code of every kernel that is called in this context, so that it runs without numba later.
 
     Yields
     ------

@@ -1,4 +1,4 @@
-"""Keep the machine code of kernels on disk, and run it without numba.
+"""Cache the machine code of kernels on disk, and run it without numba.
 
 Importing numba and loading its cached functions takes 0.4 s of processor time, several times as long as grounding a
 scene of a dozen objects. `keep` compiles a kernel for the types of one call as a C function, and writes its object

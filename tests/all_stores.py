@@ -122,14 +122,14 @@ def _supper() -> Iterator[EpisodicFluent]:
 
 
 def recorded(memory: Path) -> list[Any]:
-    """Everything that the episodes of a memory say but what was seen, without times."""
+    """Return everything that the episodes of a memory state except what was seen, without times."""
     with open_episodes(memory) as board:
         told = () if board is None else board.holding()
         return [(each.id, each.statement, each.source) for each in told if each.source.origin is not Origin.SEEN]
 
 
 def state(memory: Path) -> Any:
-    """Everything in a memory but times, and what was seen."""
+    """Return everything in a memory except times and what was seen."""
     episodes = recorded(memory)
     with Session(memory) as session:
         text = TIMES.sub("time", export_memory(session.memory())) if session.remembers() else ""

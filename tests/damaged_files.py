@@ -9,7 +9,7 @@ WORDS += [b"list", b"null", b'"', b"{", b"[" * 200, b'{"a":' * 200, b'"shapes": 
 
 
 def damaged(good: bytes, data: st.DataObject) -> bytes:
-    """Bytes changed, cut out, repeated, put in, or the end cut off, some times over."""
+    """Return the bytes with parts changed, cut out, repeated, added or cut off at the end, several times."""
     bad = bytearray(good)
     for _ in range(data.draw(st.integers(1, 4))):
         at, end = sorted(data.draw(st.tuples(*[st.integers(0, len(bad))] * 2)))

@@ -23,7 +23,7 @@ ORDER = st.builds(lambda d, strict: d._replace(code=int(not strict)), DIFFERENCE
 
 
 def floyd_warshall(constraints: list[Difference]) -> NDArray[np.int64] | None:
-    """Codes of the shortest paths on each axis; None where there is a negative cycle."""
+    """Return the codes of the shortest paths on each axis; None where there is a negative cycle."""
     table = np.full((AXES, POINTS, POINTS), FREE)
     table[:, np.arange(POINTS), np.arange(POINTS)] = 1
     for axis, tail, head, code in constraints:

@@ -32,7 +32,7 @@ class Forks:
         self.process = process
 
     def kill_after(self, folder: Path, seed: int, lines: int, delay: float) -> list[str]:
-        """Lets a child write so many lines, kills it so many seconds later, and returns all lines that it wrote."""
+        """Lets a child write ``lines`` lines, kills it ``delay`` seconds later, and returns all lines that it wrote."""
         assert self.process.stdin is not None and self.process.stdout is not None
         self.process.stdin.write(f"{folder} {seed}\n")
         self.process.stdin.flush()

@@ -12,7 +12,7 @@ SIDES = st.integers(0, 12)
 
 @st.composite
 def tables(draw: st.DrawFn, least: int = 2, most: int = 6, axes: int = 2) -> NDArray[np.float64]:
-    """Boxes on a grid, some without an extent, shape (n, 2, axes)."""
+    """Draw boxes on a grid, some without an extent, shape (n, 2, axes)."""
     count = draw(st.integers(least, most))
     low = draw(st.lists(st.tuples(*[NUMBERS] * axes), min_size=count, max_size=count))
     sides = draw(st.lists(st.tuples(*[SIDES] * axes), min_size=count, max_size=count))

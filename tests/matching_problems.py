@@ -14,7 +14,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 @st.composite
 def problems(draw: st.DrawFn, most: int = 4) -> Problem:
-    """Up to ``most`` objects and things; levels with many ties, or real numbers; some matches ruled out."""
+    """Draw up to ``most`` objects and things; levels with many ties, or real numbers; some matches ruled out."""
     n1, n2, k = draw(st.integers(0, most)), draw(st.integers(0, most)), draw(st.integers(1, 3))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     m = draw(st.integers(0, 7)) if n1 > 1 else 0

@@ -1,4 +1,4 @@
-"""Folders that cannot be written, also for root: by what the system says of them."""
+"""Folders that cannot be written, also for root: by what the system says about them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 
 def make_read_only(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have every write under a folder refused, as on a file system mounted read-only: also removing what is missing."""
+    """Make every write under a folder fail, as on a file system mounted read-only: also removing what is missing."""
     real = os.open
 
     def refusing(path: Any, flags: int, *rest: Any, **more: Any) -> int:

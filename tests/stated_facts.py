@@ -53,7 +53,7 @@ FLAT = [r for r in ORDERED if not r.z_atoms]
 
 
 def some_facts(names: str, words: list[Relation]) -> st.SearchStrategy[list[Fact]]:
-    """Facts of every kind: plain, with a choice, denied, hedged."""
+    """Return facts of every kind: plain, with a choice, denied, hedged."""
     pairs = st.tuples(st.sampled_from(names), st.sampled_from(names)).filter(lambda p: p[0] != p[1])
     relations = st.lists(st.sampled_from(words), min_size=1, max_size=3, unique=True).map(tuple)
     fact = st.builds(

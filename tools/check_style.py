@@ -43,7 +43,7 @@ NOT_A_VERB = (
 PHRASES = {
     r"but for": "except, or without",
     r"so many as": "as many as, or a bound in symbols",
-    r"(?:is|are|be|was|were|being) told(?! apart)": "name who reports what: 'the message names …'",
+    r"(?:is|are|be|been|was|were|being) told(?! apart)": "name who reports what: 'the message names …'",
     r"anew": "again, or re- before the verb",
     r"(?<!there )(?-i:(?:is|are|was|were) none)": "there is no …",
     r"(?<!teddy )(?<!the )(?<!a )(?<![\"'`])(?-i:bears?)(?! in mind)": "has, carries, or supports",
@@ -53,6 +53,16 @@ PHRASES = {
     r"(?<!there )(?:is|are) no(?= )(?! (?:longer|more|less|fewer|greater|larger|smaller|matter))": "is not a …",
     r"is to be|are to be": "must be, or will be",
     r"thereof|therein|whereof|wherein|thereby": "of it, in it",
+    r"from which on": "at which, above which, or minimum",
+    r"if need be": "if necessary, or the condition",
+    r"any more(?=[.,;:)])": "no longer",
+    r"ever (?:nearer|closer|farther|smaller|larger|greater|sharper)": "decreasing, increasing, or closer and closer",
+    r"worth (?:its|their) while": "pays off, or the minimum from which it pays off",
+    r"learnt|whilst": "learned, while",
+    r"(?:its|and the|or the) like(?=[ .,;:)]|$)": "similar words, or the whole list",
+    r"(?:return|yield|compute|draw|write|do)s? the same (?:as|of|for|without|with)": "name what it is",
+    r"(?:says?|said|saying) (?:(?:nothing|something|little|more) )?of(?! what| which|[:*])": "about",
+    r"tells? (?:nothing|little|something)": "carries no information, or states nothing",
 }
 """Wordings that stand in the way of a reader, as regular expressions, and what to write instead."""
 
@@ -113,10 +123,19 @@ def _attribute_openings(path: Path, statements: list[ast.stmt]) -> Iterator[Find
                 yield from _riddle(path, statement.lineno, text)
 
 
+_THRESHOLD = re.compile(
+    r"(?:Least|Greatest)\b"
+    r"|(?:Age|Agreement|Angle|Confidence|Degree|Distance|Error|Height|Length|Metres|Probability|Ratio|Share)\b"
+    r"[^.:;]*\sfrom\swhich\b"
+)
+
+
 def _riddle(path: Path, line: int, docstring: str) -> Iterator[Finding]:
     opening = next((words for words in RIDDLES if re.match(rf"{words}\b", docstring.strip())), None)
     if opening is not None:
         yield Finding(path, line, f"docstring opens with '{opening}': say what it is or does")
+    if _THRESHOLD.match(docstring.strip()):
+        yield Finding(path, line, "docstring of a threshold: start with 'Minimum' or 'Maximum', then 'at which'")
 
 
 def _phrase_findings(path: Path, text: str, line: int) -> Iterator[Finding]:

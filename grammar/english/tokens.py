@@ -40,7 +40,7 @@ _CODES = re.compile(
     r"\((?:[A-Za-z]{1,6}\.?\s*)?\d[\w./-]*\)"
     r"|(?<=\w)\s\d+\s?[\u2013-]\s?\d+(?=[\s,;.])(?!\s*(?:cm|mm|m|inch|feet|ft)\b)"
 )
-"""Codes of things, which say nothing of places: *(inv. 112)*, *samples 1\u20136*."""
+"""Codes of things, which say nothing about places: *(inv. 112)*, *samples 1\u20136*."""
 _IN_BRACKETS = re.compile(r"\(([^()\n]{3,60})\)")
 _CAPITAL = r"[A-Z][\w'\u2019]*"
 _TITLE = rf"{_CAPITAL}(?:\s+(?:(?:an?|the|of|and|on|in|at|by|to|for|with|from|under|over|behind|near)\s+)*{_CAPITAL})+"
@@ -57,7 +57,7 @@ _TITLES = re.compile(
     + r"|(?<=\bcalled)\s+"
     + _TITLE
 )
-"""Titles of works and names of things, whose words say nothing of places: *my copy of Under the Volcano*."""
+"""Titles of works and names of things, whose words say nothing about places: *my copy of Under the Volcano*."""
 _DEPICTED = re.compile(
     r"(?<=\w)\s+of\s+(?:an?|two|three|some)\s+(?:[\w-]+\s+){1,2}?"
     r"((?:on|in|under|behind|beside|above|near|over|at|with)\s+an?\s+(?:[\w-]+\s+){0,2}?[\w-]+"
@@ -414,7 +414,7 @@ def without_request(words: list[Word]) -> bool:
     Returns
     -------
     bool
-        False for a sentence that asks or tells something.
+        False for a question or a statement.
     """
     start = next((i for i, word in enumerate(words) if word.is_word and word.norm not in _BEFORE_REQUESTS), 0)
     norms = [word.norm for word in words[start : start + 4]]
@@ -520,7 +520,7 @@ DOUBT = re.compile(
 
 
 def _without_doubts_of_the_reader(text: str, span: Span, words: list[Word]) -> None:
-    """Leave out *if in doubt* and its like at the beginning of a sentence."""
+    """Leave out *if in doubt* and similar phrases at the beginning of a sentence."""
     doubt = DOUBT.match(text, *span)
     if doubt is not None:
         words[:] = [word for word in words if word.start >= doubt.end()]

@@ -110,7 +110,7 @@ class NounPhrase:
 
 @dataclass(frozen=True, slots=True)
 class Predicate:
-    """Something said of a subject: ``left of the plate``, ``red``, ``between the cup and the jug``, ``the tallest``.
+    """Something said about a subject: ``left of the plate``, ``red``, ``between the cup and the jug``, ``the tallest``.
 
     ``relation`` is a name of the ontology (``left``, ``near``, ``between``, ``corner``, ``bigger``, ``colour``) or, for
     a property, the dimension of its ``value``. ``reversed`` is True where the subject and the first argument change
@@ -150,11 +150,11 @@ class Predicate:
 
 @dataclass(frozen=True, slots=True)
 class Clause:
-    """One subject with what is said of it; ``predicates`` are all said together (*and*).
+    """One subject with what is said about it; ``predicates`` are all said together (*and*).
 
     ``choices`` are further lists of predicates of which one holds instead (*or, if you prefer, …*). ``condition`` is
     the text of an *if* clause, ``modal`` the word that makes it less than a plain statement (``should``, ``may``,
-    ``must``, ``cannot``), ``past`` is True if it need not hold any more.
+    ``must``, ``cannot``), ``past`` is True if it may no longer hold.
     """
 
     subject: NounPhrase | None

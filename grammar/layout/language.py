@@ -55,7 +55,7 @@ class Language:
     phrase_starts: frozenset[str]  # words that begin a longer relation phrase: 'upper', 'to', 'in front'
 
     def reads_as_name(self, text: str) -> bool:
-        """Say whether an unquoted text is read as a name of exactly this spelling, also before a relation.
+        """Return whether an unquoted text is read as a name of exactly this spelling, also before a relation.
 
         Parameters
         ----------

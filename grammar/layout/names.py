@@ -38,7 +38,7 @@ RELATING_TERMINALS = frozenset({"RELATION", "IS", "VERB"})
 
 
 def is_also_noun(token: Token) -> bool:
-    """Say whether a function word can also name a thing: a watering can.
+    """Return whether a function word can also name a thing: a watering can.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def is_also_noun(token: Token) -> bool:
 
 
 def may_be_meant_as_name(tokens: list[Token], at: int) -> bool:
-    """Say whether a reserved word may have been written as a name.
+    """Return whether a reserved word may have been written as a name.
 
     Parameters
     ----------

@@ -176,7 +176,7 @@ class TreeBuilder(Transformer[Token, Statement]):
         phrase: Token,
         *objects: tuple[Mention, ...] | None,
     ) -> ClaimStatement:
-        """Return the claims of ``SUBJECTS at far left corner``, ``SUBJECTS between OBJECTS`` and the like."""
+        """Return the claims of ``SUBJECTS at far left corner``, ``SUBJECTS between OBJECTS`` and similar statements."""
         stated = meaning(phrase)
         than = objects[-1]
         if than is not None and stated.term not in ("closer", "farther"):

@@ -153,7 +153,7 @@ def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion
         If the question is not understood; the message has wordings that would be.
     """
     if not isinstance(text, str) or not text.strip():
-        raise RecallQuestionError(f"a question must be a text; say for example: {WORDINGS[1]}")
+        raise RecallQuestionError(f"a question must be a string; ask, for example: {WORDINGS[1]}")
     if len(text) > MAX_QUESTION:
         raise RecallQuestionError(f"a question must have at most {MAX_QUESTION} characters, got {len(text)}")
     ontology = ontology or default_ontology()

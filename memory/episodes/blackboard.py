@@ -55,7 +55,7 @@ FLUENT, LOG, SUBJECT, PREDICATE, COUNTER, HEAD = b"f", b"l", b"s", b"p", b"n", b
 """First bytes of the keys: fluents by id, log by sequence number, ids by subject and by predicate, counters, head."""
 
 MAX_LOOKED_UP = 500
-"""Number of fluents of one subject or predicate from which on a window is looked up by its times instead."""
+"""Number of fluents of one subject or predicate above which a window is looked up by its times instead."""
 
 _NUMBERED = re.compile(r"(.*\D)([1-9]\d{0,15})")
 
@@ -343,7 +343,7 @@ class Blackboard(Closing):
         return f"{prefix}{number}"
 
     def reserve(self, ids: Iterable[str]) -> None:
-        """Take care that ids which came from elsewhere are never given by :meth:`new_id`.
+        """Ensure that ids from another source are never given by :meth:`new_id`.
 
         Parameters
         ----------
@@ -427,8 +427,8 @@ class Blackboard(Closing):
         Returns
         -------
         Part
-            The part. Others may write to the blackboard until it is completed; a change that does not fit any more then
-            is left out.
+            The part. Others may write to the blackboard until it is completed; a change that no longer fits then is
+            left out.
         """
         return EpisodesPart(self, changes, check_text(by, "the writer"))
 

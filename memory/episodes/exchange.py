@@ -74,7 +74,7 @@ def export_episodes(board: Blackboard) -> str:
 def import_episodes(board: Blackboard, text: str, file: str) -> int:
     """Add exported fluents to a blackboard: all of them or, if one is refused, none.
 
-    Times are moved to the origin of the blackboard. Ids of the file are never given again.
+    Times are moved to the origin of the blackboard. Ids of the file are never reused.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def import_episodes(board: Blackboard, text: str, file: str) -> int:
 
 
 def import_file(memory: Path, file: Path) -> int:
-    """Add the fluents of a file to the blackboard of a memory, which is made with the origin of the file if need be.
+    """Add the fluents of a file to the blackboard of a memory; a new one gets the origin of the file.
 
     Parameters
     ----------
@@ -265,7 +265,7 @@ def _of_list(data: Any) -> EpisodicFluent:
     }
     for name, value in texts.items():
         if not isinstance(value, str) and not (value is None and name in ("object", "event")):
-            raise ImportFormatError(f"its {name} must be a text, got {json_type(value)}")
+            raise ImportFormatError(f"its {name} must be a string, got {json_type(value)}")
     origins = [each.value for each in Origin]
     if origin not in origins:
         raise ImportFormatError(f"its origin must be one of {', '.join(origins)}, got {json.dumps(origin):.60}")

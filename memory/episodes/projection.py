@@ -1,7 +1,7 @@
 """The fluents in the semantic store, for SPARQL: a copy that follows the log of the blackboard.
 
-The log is the truth. The graph ``dxg:fluents`` describes all fluents, and ``dxg:now`` has the statements that hold now
-as plain triples. A mark says up to which change they follow the log; a query first brings them up to date. After a
+The log is authoritative. The graph ``dxg:fluents`` describes all fluents, and ``dxg:now`` has the statements that hold
+now as plain triples. A mark says up to which change they follow the log; a query first brings them up to date. After a
 crash the changes since the mark are applied again, which gives the same triples.
 """
 

@@ -35,8 +35,8 @@ class Condition(Enum):
 class SubscriberState:
     """A subscriber at one moment.
 
-    ``position`` is the sequence number up to which it has been told, ``behind`` the number of changes in the log after
-    it, ``error`` the last error of its callback if the present change has failed.
+    ``position`` is the sequence number up to which it has been notified, ``behind`` the number of changes in the log
+    after it, ``error`` the last error of its callback if the present change has failed.
     """
 
     name: str
@@ -103,7 +103,7 @@ class Subscription:
 
     @property
     def position(self) -> int:
-        """Sequence number up to which the subscriber has been told."""
+        """Sequence number up to which the subscriber has been notified."""
         return self._position
 
     @property
@@ -127,7 +127,7 @@ class Subscription:
             self._trouble(str(self.state))
 
     def wait(self, sequence: int, timeout: float | None = None) -> bool:
-        """Wait until the subscriber has been told of all changes up to a sequence number.
+        """Wait until the subscriber has been notified of all changes up to a sequence number.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ class Subscription:
         Returns
         -------
         bool
-            True if it has been told in time.
+            True if it has been notified in time.
         """
         with self._moved:
             return self._moved.wait_for(lambda: self._position >= sequence, timeout)

@@ -266,7 +266,7 @@ def check_name(what: str, name: object) -> str:
         If the name is not a text, is empty or too long, or has half a character.
     """
     if not isinstance(name, str) or not name:
-        raise RecordError(f"{what} must be a text of one or more characters, got {name!r}")
+        raise RecordError(f"{what} must be a string of one or more characters, got {name!r}")
     try:
         length = len(name.encode())
     except UnicodeEncodeError as error:

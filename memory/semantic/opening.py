@@ -155,7 +155,7 @@ def open_store(folder: Path) -> ox.Store:
     except (OSError, RuntimeError) as error:
         if _HELD_HERE in str(error):
             raise MemoryBusyError(
-                f"the memory at {folder} is still read by this process: let go of what iterates over it, then try again"
+                f"the memory at {folder} is still read by this process: release the iterators over it, then try again"
             ) from error
         raise MemoryWriteError(f"the memory at {folder} could not be opened: {files.one_line(error)}") from error
 
@@ -206,19 +206,19 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
     MemoryFormatError
         If there is no memory, or its files are invalid.
     MemoryWriteError
-        If the folder cannot be made or written.
+        If the folder cannot be created or written.
     """
     begin_opening(folder)
     remove_stale()
     state = files.inspect(folder)
     if state in (FolderState.ABSENT, FolderState.EMPTY) and not create:
-        raise MemoryFormatError(f"{_why_none(folder, state)}; learn something into it first, or name another folder")
+        raise MemoryFormatError(f"{_why_none(folder, state)}; learn or teach something first, or name another folder")
     made = state is FolderState.ABSENT
     if made:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
+            raise MemoryWriteError(f"the folder {folder} cannot be created: {error.strerror}") from error
     try:
         try:
             lock = OwnerLock.acquire(folder)

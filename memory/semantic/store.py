@@ -502,7 +502,7 @@ class SemanticMemory(Closing):
             return ledger.lessons(self.store)
 
     def knows(self, lesson: str) -> bool:
-        """Say whether there is a lesson with an id.
+        """Return whether there is a lesson with an id.
 
         Parameters
         ----------

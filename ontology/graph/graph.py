@@ -60,7 +60,7 @@ class RelationGraph:
     sources: tuple[Source | None, ...] = ()  # (m,), or empty if no edge has a source
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     colours: tuple[str | None, ...] = ()  # (n,) IRIs of described colours, or empty
-    boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner, metres
+    boxes: NDArray[np.float64] | None = None  # (n, 2, d): minimum and maximum corner, metres
     _index: dict[str, int] = field(init=False)
 
     def __repr__(self) -> str:
@@ -131,7 +131,7 @@ class RelationGraph:
         kinds
             Class IRI of each node or None; empty if no kind is known.
         boxes
-            Least and greatest corners, shape (n, 2, d), or None.
+            Minimum and maximum corners, shape (n, 2, d), or None.
         colours
             IRI of the colour of each node or None; empty if no colour is known.
 

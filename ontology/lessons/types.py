@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 ANONYMOUS = "user"
-"""Name of a teacher who is not named."""
+"""Name that is stored for a teacher whose name is not given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,12 +176,12 @@ class SeenObject(Protocol):
 
     @property
     def minimum(self) -> tuple[float, ...]:
-        """Least corner of the bounding box, 2 or 3 coordinates in the scene's unit."""
+        """Minimum corner of the bounding box, 2 or 3 coordinates in the scene's unit."""
         ...
 
     @property
     def maximum(self) -> tuple[float, ...]:
-        """Greatest corner of the bounding box, 2 or 3 coordinates in the scene's unit."""
+        """Maximum corner of the bounding box, 2 or 3 coordinates in the scene's unit."""
         ...
 
     @property

@@ -20,7 +20,7 @@ GROUPS_FILE = Path(__file__).with_name("groups.txt")
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A group: its words, the IRIs of the kinds in it, and the names in it that the lexicon does not know whole.
+    """A group: its words, the IRIs of the kinds in it, and the names in it that the lexicon lacks.
 
     Each kind stands for its narrower kinds too. The names are in the singular.
     """
@@ -87,7 +87,7 @@ class Groups:
         return self._by_word.get(_singular(word))
 
     def known_as(self, noun: str) -> tuple[Kind | None, str]:
-        """Return how the groups know a thing.
+        """Return the kind of a noun phrase, or the ending of it that a group lists.
 
         The longest ending counts: a *paper plate* is more than a plate.
 

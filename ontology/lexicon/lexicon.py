@@ -67,7 +67,7 @@ class Lexicon:
         return Groups(self._kinds)
 
     def knows(self, noun: str) -> bool:
-        """Say whether a whole noun, in the singular or the plural, is one of the lexicon.
+        """Return whether a whole noun, in the singular or the plural, is one of the lexicon.
 
         Parameters
         ----------

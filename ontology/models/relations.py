@@ -161,7 +161,7 @@ GRADED_FAMILIES: Mapping[str, str] = {
 """Model of each word in the graded reading."""
 
 ORIENTED = frozenset({"facing", "pointing"})
-"""Models of words that say nothing of things without a known orientation."""
+"""Models of words that say nothing about things without a known orientation."""
 
 MODEL_OF_WORD: Mapping[str, str] = {**FAMILIES, **GRADED_FAMILIES}
 """Model of every word that has one."""

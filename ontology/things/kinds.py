@@ -221,7 +221,7 @@ class Kinds:
         return self._heads[key]
 
     def is_a(self, kind: Kind, broader: Kind) -> bool:
-        """Say whether a kind is a broader one or a subclass of it.
+        """Return whether a kind is a broader one or a subclass of it.
 
         Parameters
         ----------
@@ -253,7 +253,7 @@ class Kinds:
         return max((self[iri] for iri in sorted(kind.broader)), key=lambda above: len(above.broader), default=kind)
 
     def in_tbox(self, iri: str) -> bool:
-        """Say whether the TBox, not only the lexicon, has a kind.
+        """Return whether the TBox, not only the lexicon, has a kind.
 
         Parameters
         ----------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 ABOUT_AS_LARGE = 1.6
-"""Greatest ratio of typical lengths of two kinds that are about as large."""
+"""Maximum ratio of typical lengths of two kinds that are about as large."""
 
 
 class Outline(StrEnum):
@@ -37,7 +37,7 @@ class Extent:
         return f"{100 * self.least:g} to {100 * self.greatest:g} cm"
 
     def admits(self, metres: float, tolerance: float = 0.0) -> bool:
-        """Say whether a length lies in the range.
+        """Return whether a length lies in the range.
 
         Parameters
         ----------
@@ -82,7 +82,7 @@ class SizeRange:
         return f"{self.length} long and {self.width} wide"
 
     def is_about_as_large_as(self, other: SizeRange) -> bool:
-        """Say whether typical length and height differ by a factor of at most ``ABOUT_AS_LARGE``.
+        """Return whether typical length and height differ by a factor of at most ``ABOUT_AS_LARGE``.
 
         Parameters
         ----------

@@ -30,7 +30,7 @@ DEPTH_SPREAD = 3.0
 """Difference of two distances, in standard deviations of the noise, at which a pixel counts exp(-1/2)."""
 
 MIN_WEIGHT = 3.0
-"""Least sum of weights, as a number of pixels, to which a plane is fitted."""
+"""Minimum sum of weights, as a number of pixels, to which a plane is fitted."""
 
 SLOPE_PRIOR = 0.1
 """Weight of level planes in the fit, as a number of pixels, which keeps it stable where few pixels count."""

@@ -126,8 +126,8 @@ class PlaneSettings(_Thresholds):
     min_inlier_share: float = 0.04
     """Fraction of the points that the plane of a table must hold. No scene or test tried depends on it."""
     min_standing_height: float = 0.008
-    """Metres above a plane from which a point stands on it: more than noise, less than a plate. No scene or test tried
-    depends on it."""
+    """Minimum height in metres of a point that stands on a plane: more than noise, less than a plate. No scene or test
+    tried depends on it."""
     max_standing_height: float = 0.35
     """Metres above a plane up to which a point stands on it: the height of a bottle. No scene or test tried depends on
     it."""
@@ -188,7 +188,8 @@ class ViewpointSettings(_Thresholds):
     """Fraction of far neighbours above which another viewpoint with half of it is searched: 0.03 and more was measured
     in a cloud that combines two views. No scene or test tried depends on it."""
     min_eye_height: float = 0.05
-    """Metres above the table from which its top is visible. No scene or test tried depends on it."""
+    """Minimum height in metres of the camera above the table at which the table top is visible. No scene or test tried
+    depends on it."""
     assumed_distance: float = 1.5
     """Metres from the middle of the table at which an unknown viewpoint is searched: the usual distance of cameras.
     Tested by test_a_cloud_with_a_wrong_origin_keeps_its_own_y_axis."""
@@ -220,7 +221,7 @@ class HeightSettings(_Thresholds):
     """Minimum noise in metres at one metre from the sensor, because tables are not perfectly flat. Tested by
     test_a_strip_of_a_few_millimetres_is_kept_without_the_table[0.0]."""
     min_noise_distance: float = 0.3
-    """Metres from the sensor below which noise does not decrease any more. No scene or test tried depends on it."""
+    """Metres from the sensor below which noise no longer decreases. No scene or test tried depends on it."""
     object_noise_ratio: float = 1.5
     """Minimum height of an object relative to the threshold for a point above the table, so that a ripple of noise is
     not an object. At a tenth of it, mosd 44 has two objects more at half resolution; at three times it, mosd 54 has one
@@ -459,8 +460,8 @@ class JoiningSettings(_Thresholds):
     """Maximum distance of a neck from the middle of its bottle, relative to the width of the bottle. Tested by
     test_a_neck_joins_the_bottle_below_its_middle[a thing on the edge of another]."""
     shoulder_depth: float = 0.02
-    """Metres below the top of the body of a bottle from which its neck may begin. No scene or test tried depends on
-    it."""
+    """Minimum distance in metres from the top of the body of a bottle down to its neck. No scene or test tried depends
+    on it."""
     # Handles, necks and sides.
     attachment_ratio: float = 0.6
     """Maximum width and area of a handle or a neck, relative to those of its body. If halved, mosd 52 and 54 have one
@@ -535,7 +536,7 @@ class TableTopSettings(_Thresholds):
     """Maximum fraction of such a line on which nothing is visible: the shadow of the object that hides the rest. Tested
     by test_a_second_table_gets_a_note_and_can_be_used."""
     outline_sample_size: int = 30_000
-    """Number of points of a table from which its outline is computed. No scene or test tried depends on it."""
+    """Minimum number of points of a table at which its outline is computed. No scene or test tried depends on it."""
     slack: float = 0.02
     """Metres by which a point of an object may be beyond the outline of the table: objects reach over the edge. No
     scene or test tried depends on it."""
@@ -589,7 +590,7 @@ class NoteSettings(_Thresholds):
     """Fraction of the points above the table in pieces too small or too low for objects, above which a note is given.
     Tested by test_unreported_points_get_a_note."""
     overhang: float = 0.1
-    """Metres beyond the outline of the table from which a piece reaches over its edge. Tested by
+    """Minimum distance in metres beyond the outline of the table that a piece over its edge reaches. Tested by
     test_unreported_points_get_a_note."""
     min_overhang_share: float = 0.1
     """Fraction of such a piece that must be so far outside, and fraction that must be inside. Tested by

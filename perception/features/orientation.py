@@ -32,7 +32,7 @@ MIN_POINTS = 40
 """Minimum number of thinned points of a thing whose orientation is measured."""
 
 LONG = 2.5
-"""Ratio of length to width from which a thing has an axis with two different ends."""
+"""Minimum ratio of length to width at which a thing has an axis with two different ends."""
 
 SLICES = 12
 """Number of slices along a long thing in which its profile is measured."""
@@ -47,7 +47,7 @@ RIM_SHARE = 0.12
 """Share of the height below the top in which the rim of a round thing is looked for."""
 
 HANDLE_CLEARANCE = 0.006
-"""Distance in metres beyond the rim from which points may belong to a handle."""
+"""Minimum distance in metres beyond the rim at which points may belong to a handle."""
 
 MIN_PROBABILITY = 0.6
 """Minimum probability of a heading that a scene is given."""

@@ -37,7 +37,7 @@ class _Image:
 
 
 def is_coco(data: Any) -> bool:
-    """Say whether parsed JSON has the keys of COCO annotations.
+    """Return whether parsed JSON has the keys of COCO annotations.
 
     Parameters
     ----------

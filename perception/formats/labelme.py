@@ -40,7 +40,7 @@ _MARKS = {"version", "flags", "imagePath", "imageData", "imageHeight", "imageWid
 
 
 def is_labelme(data: Any) -> bool:
-    """Say whether parsed JSON has the keys of LabelMe annotations.
+    """Return whether parsed JSON has the keys of LabelMe annotations.
 
     Parameters
     ----------

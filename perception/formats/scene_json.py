@@ -298,7 +298,7 @@ def _misspelt(key: Any, known: set[str]) -> str:
     """Return what is wrong with a key that is not known, with the key that was probably meant."""
     word = shown(key)
     near = nearest(word.casefold(), sorted(known)) if len(word) <= MAX_SHOWN else None
-    return f"'{word}' is not a key here" + (f", did you mean '{near}'?" if near else "")
+    return f"'{word}' is not a key here" + (f" (did you mean '{near}'?)" if near else "")
 
 
 def _require_keys(entry: Mapping[str, Any], keys: Sequence[str], where: str) -> None:

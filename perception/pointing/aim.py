@@ -29,7 +29,7 @@ from deixis.perception.scene import PerceivedObject, Scene
 Array = NDArray[np.float64]
 
 SURE = 0.95
-"""Probability from which on a thing is decided."""
+"""Minimum probability of a decided thing."""
 
 NONE = "none of them"
 """Name of the case that the gesture points at no thing of the scene."""
@@ -238,7 +238,7 @@ def pointed_at(
         Relative weights of the things before the gesture is seen, by id, such as how well a name fits each; 1 for those
         that are left out.
     sure
-        Probability from which on a thing is decided.
+        Minimum probability of a decided thing.
     model
         Distribution of the misses; default: the shipped one.
 

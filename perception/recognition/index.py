@@ -270,7 +270,7 @@ class ViewIndex:
 
     @cached_property
     def longest(self) -> float:
-        """Greatest length of a reduced descriptor."""
+        """Maximum length of a reduced descriptor."""
         return longest(self.reduced)
 
     @cached_property

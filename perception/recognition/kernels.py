@@ -139,7 +139,7 @@ def _lowest(least, lengths, rough, longest, within):  # type: ignore[no-untyped-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def view_distance(target, columns, lengths, view, squares, limit):  # type: ignore[no-untyped-def]
-    """Return D_V (equation 1) between a target (q, d) and a view (k, d), or infinity if it is surely above ``limit``.
+    """Return D_V (equation 1) between a target (q, d) and a view (k, d), or infinity if that is above ``limit``.
 
     ``columns`` (d, q) is the transposed target, ``lengths`` (q,) are the lengths of its descriptors, and ``squares``
     (k,) the squared lengths of the view's descriptors.

@@ -29,7 +29,7 @@ HEIGHT_STEP = 0.002
 """Distance in metres between the places where heights are compared, in addition to the vertices."""
 
 PlanBox = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Least and greatest corner (2,) in plan."""
+"""Minimum and maximum corner (2,) in plan."""
 
 
 def overlap_in_plan(box: PlanBox, other: PlanBox) -> bool:
@@ -188,7 +188,7 @@ class LaidThing:
 
     @property
     def box(self) -> NDArray[np.float64]:
-        """Least and greatest corner in the table's frame, (2, 3), rounded to micrometres to keep contacts."""
+        """Minimum and maximum corner in the table's frame, (2, 3), rounded to micrometres to keep contacts."""
         corners: NDArray[np.float64] = np.stack([self.mesh.vertices.min(axis=0), self.mesh.vertices.max(axis=0)])
         return corners.round(6) + 0.0
 

@@ -90,7 +90,7 @@ def _state(z, colour, reference, shade, near, square):  # type: ignore[no-untype
 def remembered(  # type: ignore[no-untyped-def]
     state, depth, colour, reference, shade, offset, last, aside, since, at, tolerance, noise, least_colour, rate
 ):
-    """Move the reference of unchanged pixels towards what is measured, and note since when each depth is steady.
+    """Move the reference of unchanged pixels towards what is measured, and record since when each depth is steady.
 
     ``offset`` (r, c, 2) and ``aside`` (r, c, 2) are how far the points of the reference and the last depths lie from
     the middles of their pixels.

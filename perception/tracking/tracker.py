@@ -1,9 +1,9 @@
 """Follow the things on a table from frame to frame, with what is new, what moves and what is gone.
 
-The table at rest is a reference image of depth, colour and owner of every pixel. A thing of which enough pixels are
-unchanged rests, which costs nothing more. A thing that has left its place is followed by its particle filter. Pixels
-that changed and stay as they are, and that are neither a hand's nor a moving thing's, are segmented, and become new
-things or the places of things that were lost.
+The table at rest is a reference image of depth, colour and owner of every pixel. A thing rests while enough of its
+pixels are unchanged; this costs nothing more. A thing that has left its place is followed by its particle filter.
+Pixels that changed and stay as they are, and that are neither a hand's nor a moving thing's, are segmented, and become
+new things or the places of things that were lost.
 """
 
 from __future__ import annotations
@@ -46,22 +46,22 @@ from deixis.perception.tracking.things.particles import Estimate
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 MIN_FINITE_SHARE = 0.02
-"""Least share of points with a depth in a frame that is used."""
+"""Minimum share of points with a depth in a frame that is used."""
 
 MIN_OWN_PIXELS = 6
-"""Least number of measured pixels of a thing that decide whether it rests."""
+"""Minimum number of measured pixels of a thing that decide whether it rests."""
 
 MIN_WAY = 0.012
-"""Distance in metres from which a thing whose place is hidden has moved."""
+"""Minimum distance in metres to its old place at which a thing has moved while this place is hidden."""
 
 MAX_SPEED = 0.8
 """Speed in metres per second at which a thing may move while it is not found."""
 
 MIN_MOVING_PIXELS = 80
-"""Least number of pixels of something that moves and is not a thing, such as a part of a hand."""
+"""Minimum number of pixels of something that moves and is not a thing, such as a part of a hand."""
 
 DETECTION_PAUSE = 0.25
-"""Least time in seconds between two segmentations."""
+"""Minimum time in seconds between two segmentations."""
 
 EDGE_REACH = 1
 """Distance in pixels within which an equal depth of the reference is looked for, while the camera moves."""
@@ -70,17 +70,17 @@ UNSTEADY_FOR = 1.0
 """Time in seconds after a movement of the camera in which pixels are compared within ``EDGE_REACH``."""
 
 EXPOSED = 0.3
-"""Least share of the points of a thing that nothing hides, for its place to be called empty or not."""
+"""Minimum share of the points of a thing that nothing hides, for its place to be called empty or not."""
 
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
 
 MIN_GAIN, LEAST_EXPOSED, SEEN_WELL = 0.15, 0.1, 0.5
-"""Least gain of agreement by which a thing that is mostly hidden has moved, the least share of its points that nothing
-hides where it rested, for this comparison, and the least share that is seen elsewhere without it."""
+"""Minimum gain of agreement by which a thing that is mostly hidden has moved, the minimum share of its points that
+nothing hides where it rested, for this comparison, and the minimum share that is seen elsewhere without it."""
 
 BACK, BACK_AFTER = 0.7, 0.3
-"""Agreement from which a thing that is not found is again where it rested, and the time for which it was not found."""
+"""Minimum agreement at which a thing that was not found is again where it rested, and how long it was not found."""
 
 AROUND, MIN_EXPLAINED = 0.03, 0.6
 """Distance in metres around a thing that is found far away, and its least share of the points that changed there."""
@@ -102,13 +102,13 @@ TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
 mean likeness of their colours in any light."""
 
 REVEALED = 0.5
-"""Least share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
+"""Minimum share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
 
 SET_DOWN = 1.0
 """Time in seconds before a new thing is steady in which the hand that sets it down is near."""
 
 FILLED = 0.5
-"""Least ratio of the sides of two boxes of one thing."""
+"""Minimum ratio of the sides of two boxes of one thing."""
 
 CONFIRM_AFTER = 0.3
 """Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
@@ -120,16 +120,16 @@ BLIND_FOR = 1.5
 """Time in seconds in which nothing is concluded from frames of a moving camera whose place is not known."""
 
 BLINK = 1.5
-"""Time in seconds between two frames from which anything may have happened in between."""
+"""Minimum time in seconds between two frames at which anything may have happened in between."""
 
 HAND_MEMORY = 0.5
 """Time in seconds after a hand was seen in which it may have moved several things at once."""
 
 SAME_PIXELS = 0.3
-"""Intersection over union of pixels from which a detected and a tracked thing may be one."""
+"""Minimum intersection over union of pixels at which a detected and a tracked thing may be one."""
 
 SAME_MODEL = 0.8
-"""Intersection over union of pixels from which a tracked thing keeps its model at a look at the whole table."""
+"""Minimum intersection over union of pixels at which a tracked thing keeps its model at a look at the whole table."""
 
 
 class Tracker:
@@ -718,7 +718,7 @@ class Tracker:
         thing.rest = next(self._rests)
 
     def _claim(self, thing: Pipeline, image: FrameImage, changes: Changes) -> None:
-        """Give the changed pixels within the box of a thing that has come to rest to it."""
+        """Assign the changed pixels within the box of a thing that has come to rest to this thing."""
         from deixis.perception.tracking.kernels import SAME
 
         assert self._reference is not None and self._view is not None

@@ -1,1 +1,1 @@
-"""Activities: steps in time as relation graphs with Allen labels, told or learned, grounded in sequences of fluents."""
+"""Activities: steps in time as relation graphs with Allen labels, described or learned; grounded in fluents."""

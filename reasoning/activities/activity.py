@@ -27,7 +27,7 @@ STEP_PRESENT, RELATION_HOLDS = 0.95, 0.97
 """Probabilities that a described step is carried out, and that a described relation between two steps holds."""
 
 PRIOR = 1.0
-"""Number of examples that the prior of the relations of a pair counts as."""
+"""Weight of the prior of the relations of a pair, as a number of examples."""
 
 STARTS_FIRST = 0b0000000011111
 """Mask of the Allen relations in which the first fluent starts before the second one."""
@@ -380,7 +380,7 @@ class Activity:
         return found
 
     def usual_order(self) -> tuple[tuple[Step, Step], ...]:
-        """Return the pairs of steps of which the first always started first, as told or in all examples.
+        """Return the pairs of steps in which the first always started first, as described or in all examples.
 
         Returns
         -------

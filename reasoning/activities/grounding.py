@@ -68,7 +68,7 @@ class ActivityGrounding(Answer):
 
     @property
     def missing(self) -> tuple[Step, ...]:
-        """Steps that no fluent is."""
+        """Steps without a matching fluent."""
         return tuple(match.step for match in self.matches if match.fluent is None)
 
     def summary(self) -> str:
@@ -199,7 +199,7 @@ def _problem(activity: Activity, seen: StepSequence, vocabulary: int | None) -> 
 
 
 def _chance(seen: StepSequence) -> NDArray[np.float64]:
-    """Return how often each relation holds of a pair of fluents of the sequence, of any pair at least a little."""
+    """Return the smoothed frequency of each relation among the pairs of fluents of the sequence."""
     n = len(seen.steps)
     members = seen.members[~np.eye(n, dtype=bool)]
     shares = (members / members.sum(axis=1, keepdims=True)).sum(axis=0) if n > 1 else np.zeros(RELATIONS)

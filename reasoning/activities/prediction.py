@@ -1,4 +1,4 @@
-"""Predict what is laid next, and where, from examples of how a table was laid and from what a person said of the order.
+"""Predict what is laid next, and where, from examples of laid tables and from the order that a person stated.
 
 Order. For each pair of steps, three hypotheses are compared: the first always comes before the second, the second
 before the first, or their order is free. The examples give their posterior, and a stated order a strong prior. A step
@@ -28,19 +28,19 @@ STRICT = 0.1
 """Prior probability that one given step of a pair always comes before the other one."""
 
 SLIP = 0.05
-"""Probability that a person lays two things in another order than her own."""
+"""Probability that a person lays two things in an order other than her usual one."""
 
 FOLLOWING = 8.0
-"""Number of observations that the uniform prior of what directly follows a step counts as."""
+"""Weight of the uniform prior of the next step, as a number of observations."""
 
 SPREAD, SPREAD_WEIGHT = 0.06, 1.0
-"""Prior standard deviation of an offset in metres, and the number of observations that it counts as."""
+"""Prior standard deviation of an offset in metres, and the weight of this prior as a number of observations."""
 
 TAKEN = 0.04
 """Distance in metres from a thing of an equal kind within which a place is taken."""
 
 TABLE = "table"
-"""Name of the reference of places that is always there."""
+"""Name of the reference of places that every table has."""
 
 Item = tuple[str, int]
 """Kind of a thing, and its number among those of the kind in the order in which they are laid, from 1."""
@@ -230,8 +230,8 @@ class LayingModel:
     def _still_coming(self, there: Sequence[int], left: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return the probability that each step that is left is still to come.
 
-        A step without examples, which was only told, is expected. A step after which others have been laid that it
-        should come before was probably left out.
+        A step that was only stated, without examples, is expected. A step was probably left out if steps that it should
+        precede have been laid already.
         """
         examples = len(self._examples)
         seen = self._present[left]

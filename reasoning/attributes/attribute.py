@@ -42,7 +42,7 @@ LABEL_PRIOR = 0.2
 """Parameter of the Beta distribution of the share of the things of a label that a word is true of."""
 
 LEAST = 0.01
-"""Least probability that a word is true, or not true, of a thing: people misuse words."""
+"""Minimum probability that a word is true, or not true, of a thing: people misuse words."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

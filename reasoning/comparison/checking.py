@@ -12,7 +12,7 @@ A violated statement of direction (*the fork points away*) does not misplace its
 says by how much it must be turned back.
 
 All things that fit the noun of a group of unknown number (*the glasses*) are its members, and each is checked by itself
-against what is said of the group. A group without any is missing.
+against what is said about the group. A group without any is missing.
 
 An object in a role with a stated colour is *miscoloured* if its colour is clearly another one, misplaced or not.
 
@@ -51,7 +51,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 
 SURE_CONFIDENCE = 0.9
-"""Confidence from which a label identifies its object."""
+"""Minimum confidence at which a label identifies its object."""
 
 MAX_ROLES_ROTATED = 30
 """Number of labelled roles up to which rotations of three are searched for; with more roles, only swaps."""

@@ -67,8 +67,8 @@ class ClaimVerdict(StrEnum):
 class ClaimOutcome:
     """A claim, the verdict on it, and what was measured, or the reason why it cannot be decided.
 
-    ``degree`` is that to which it holds, in [0, 1]; None where it was not measured. ``perceived`` are the things in the
-    roles of its subjects and arguments.
+    ``degree`` in [0, 1] is the degree to which it holds; None where it was not measured. ``perceived`` are the things
+    in the roles of its subjects and arguments.
     """
 
     claim: Claim

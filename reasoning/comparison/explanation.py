@@ -27,7 +27,7 @@ NOTHING = -1
 """Thing of a role that is not filled."""
 
 KEPT_WITHIN = 12.0
-"""Explanations that are less probable than the best by more nats have no share in the probabilities."""
+"""Difference in nats to the best explanation beyond which an explanation is ignored."""
 
 MAX_STEPS = 60
 """Maximum number of changes in the ascent from one start."""
@@ -305,7 +305,7 @@ class _Search:
             yield _States(thing[None], state[None], np.full((1, self.n), NOTHING, dtype=np.int64))
 
     def _with_facts(self) -> Array:
-        """Return for each role and thing the looks, and the best that each fact can say of it with any other thing."""
+        """Return the looks of each role and thing, and the best value of each fact about it with any other thing."""
         gain = self.evidence.identity.copy()
         m = self.m
         if m < 2:

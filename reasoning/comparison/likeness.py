@@ -63,7 +63,7 @@ def usual_sizes(
     kinds
         Class IRIs of the kinds.
     boxes
-        Least and greatest corners, shape (n, 2, d).
+        Minimum and maximum corners, shape (n, 2, d).
     sizes
         The usual sizes, in metres.
     learned

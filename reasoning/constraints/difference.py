@@ -137,7 +137,7 @@ class DifferenceNetwork:
         return self._table[: len(self)]
 
     def add_point(self) -> None:
-        """Add an unconstrained point on every axis; no earlier constraint can be taken back any more."""
+        """Add an unconstrained point on every axis; earlier constraints can no longer be taken back."""
         if self._points == self.matrices.shape[1]:
             axes, capacity = len(self.matrices), max(8, 2 * self._points)
             larger = np.full((axes, capacity, capacity), self.free, dtype=self.matrices.dtype)
@@ -148,7 +148,7 @@ class DifferenceNetwork:
         self.keep()
 
     def admits(self, difference: Difference) -> bool:
-        """Say whether a constraint closes no negative cycle.
+        """Return whether a constraint closes no negative cycle.
 
         Parameters
         ----------

@@ -262,13 +262,13 @@ class Search:
     # ---- hooks for searches that prove their results
 
     def _note_taken(self, level: Level, number: int) -> None:
-        """Handle that a level's piece of this number has been added to the network."""
+        """Handle the addition of a level's piece of this number to the network."""
 
     def _note_refused(self, level: Level, number: int, difference: Difference, cycle: Sequence[int]) -> None:
-        """Handle that a constraint of a piece closes a negative cycle; earlier ones of the piece are added."""
+        """Handle a constraint of a piece that closes a negative cycle; earlier ones of the piece are added."""
 
     def _note_failed(self, failed: Level, into: Level | None) -> None:
-        """Handle that a level has no piece left, which refutes the latest piece of the level ``into``; None for all."""
+        """Handle a level without a piece left, which refutes the latest piece of the level ``into``; None for all."""
 
 
 def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: Deadline) -> Search:

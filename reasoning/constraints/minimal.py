@@ -1,4 +1,4 @@
-"""Minimal subsets: some of the items that still have a property, of which none can be left out.
+"""Minimal subsets: subsets of items that have a property and lose it if any item is left out.
 
 The property must be monotone: it stays when items are added, as inconsistency and entailment do. From few items, one at
 a time is left out (deletion: Chinneck and Dravnieks 1991). From many, a search with growing steps brackets the shortest

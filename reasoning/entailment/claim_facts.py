@@ -1,7 +1,7 @@
 """Facts that claims imply: the pairs of a row, of a superlative, of an arrangement, and of what is between two others.
 
-A claim has no place in the closure of relations between pairs. The facts that it implies have: they are added to the
-stated ones, with the claim's place in the script, so that derivations and conflicts name it.
+A claim has no place in the closure of relations between pairs. The facts that it implies do have one: they are added to
+the stated facts, with the claim's place in the script, so that derivations and conflicts name it.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ RANKS = {"1 from left": "left", "-1 from right": "left", "1 from right": "right"
 """Relation of what has an extreme rank to each of the others."""
 
 AXES = ("left", "right", "top", "bottom")
-"""Relations of which one between two things holds of what is between them as well."""
+"""Relations that, if they hold between two things, also hold for a thing between the two."""
 
 
 @dataclass(frozen=True, slots=True)

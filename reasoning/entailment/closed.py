@@ -122,7 +122,7 @@ class Orders:
     axes: tuple[AxisRows | None, ...]
 
     def implies(self, bound: Bound, subject: int, obj: int) -> bool:
-        """Say whether a bound holds between two objects in every picture.
+        """Return whether a bound holds between two objects in every picture.
 
         Parameters
         ----------

@@ -234,7 +234,7 @@ def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -
 
 
 def consistent(demands: Demands, deadline: Deadline) -> bool:
-    """Say whether some demands have a picture.
+    """Return whether some demands have a picture.
 
     Parameters
     ----------
@@ -273,7 +273,7 @@ def picture_of(known: Codes) -> NDArray[np.float64]:
     Returns
     -------
     ndarray
-        Least and greatest corners, shape (n, 2, 3), without a unit.
+        Minimum and maximum corners, shape (n, 2, 3), without a unit.
     """
     after = (known == STRICT).sum(axis=1)
     return _boxes(after.reshape(AXES, 2, -1))
@@ -282,7 +282,7 @@ def picture_of(known: Codes) -> NDArray[np.float64]:
 def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
     """Return a picture of the objects of a connected group, in its order, by closed orders without open choices.
 
-    The boxes have shape (n, 2, 3): least and greatest corner.
+    The boxes have shape (n, 2, 3): minimum and maximum corner.
 
     Parameters
     ----------
@@ -294,7 +294,7 @@ def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
     Returns
     -------
     ndarray
-        Least and greatest corners of its n objects, shape (n, 2, 3), without a unit.
+        Minimum and maximum corners of its n objects, shape (n, 2, 3), without a unit.
     """
     n, words = int(orders.groups.sizes[group]), int(orders.groups.words[group])
     after = np.tile(np.array([[1], [0]], np.int64), (AXES, 1, n))

@@ -32,7 +32,7 @@ class Conflict:
 
 
 def compatible(a: Relation, b: Relation) -> bool:
-    """Say whether two boxes can have both of two relations: their atoms intersect on every axis.
+    """Return whether two boxes can have both of two relations: their atoms intersect on every axis.
 
     Parameters
     ----------

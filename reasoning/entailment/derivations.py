@@ -288,7 +288,7 @@ def _widened(step: Derivation, relation: Relation) -> Derivation | None:
 
 
 def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> bool:
-    """Say whether a plain fact holds in every picture of some facts.
+    """Return whether a plain fact holds in every picture of some facts.
 
     The test is exact for every relation: the denial of the goal is a list of choices, none of which may have a picture.
 

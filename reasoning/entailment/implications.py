@@ -98,7 +98,7 @@ class Implications:
         return self.closed.complete
 
     def holds(self, relation: Relation, subject: str, obj: str) -> bool:
-        """Say whether a fact holds in every picture.
+        """Return whether a fact holds in every picture.
 
         Parameters
         ----------

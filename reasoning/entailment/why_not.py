@@ -24,7 +24,7 @@ class CounterExample:
     """A picture in which every firm fact holds but the questioned one does not; integers without a unit."""
 
     objects: tuple[str, ...]
-    boxes: NDArray[np.float64]  # (objects, 2, 3): least and greatest corner
+    boxes: NDArray[np.float64]  # (objects, 2, 3): minimum and maximum corner
 
 
 @dataclass(frozen=True)

@@ -64,7 +64,7 @@ class PairGeometry:
 
     @cached_property
     def _corners(self) -> tuple[Array, Array, Array, Array]:
-        """Least and greatest corners seen from above, each of shape (2, n); those of the objects (2, m)."""
+        """Minimum and maximum corners seen from above, each of shape (2, n); those of the objects (2, m)."""
         return tuple(side[:, corner, :2].T.copy() for side in (self.boxes, self.objects) for corner in (0, 1))  # type: ignore[return-value]
 
     @cached_property
@@ -160,7 +160,7 @@ class PairBlocks:
         Parameters
         ----------
         boxes
-            Least and greatest corners, shape (n, 2, d).
+            Minimum and maximum corners, shape (n, 2, d).
         deadline
             Time limit.
         poses
@@ -215,10 +215,11 @@ class PairBlocks:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Pairs of n boxes (n, 2, d) that lie among many more, a block at a time: how crowded they are is known about.
+    """Pairs of n boxes (n, 2, d) among many more, one block at a time; their crowding is approximate.
 
-    ``distances`` (n, r), in rising order, are those from each box to r others that are spread evenly over the scene:
-    the share of them that is nearer stands for that of all. The work grows with n r, and not with the square of all.
+    ``distances`` (n, r), in rising order, are the distances from each box to r others that are spread evenly over the
+    scene. The share of these others that is nearer than a distance is an estimate for all boxes. The work grows with n
+    r, and not with the square of all.
     """
 
     boxes: Array
@@ -310,11 +311,11 @@ class Surroundings:
 
 
 SPREAD = 256
-"""Most things that stand for all of a scene in how crowded a pair is: a share is off by less than a hundredth."""
+"""Maximum size of the sample of things from which the crowding of a pair is estimated, with an error below 0.01."""
 
 
 def _spread_evenly(boxes: Array) -> Array:
-    """Return at most ``SPREAD`` of the boxes: of strips along y, sorted along x, every so many."""
+    """Return at most ``SPREAD`` of the boxes: of strips along y, sorted along x, at regular intervals."""
     if len(boxes) <= SPREAD:
         return boxes
     centres = boxes.mean(axis=1)
@@ -344,7 +345,7 @@ def pair_geometry(boxes: NDArray[np.float64], poses: Poses | None = None) -> Pai
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, d), d = 2 or 3.
+        Minimum and maximum corners, shape (n, 2, d), d = 2 or 3.
     poses
         Poses of the n things; None for axes along the sides of the boxes, and no fronts.
 

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 MIN_STRETCH = 0.2
-"""Least stretch of a thing with a clear long axis: its sides are as 3 to 2."""
+"""Minimum stretch, (length - width) / (length + width), of a thing with a clear long axis: an aspect ratio of 1.5."""
 
 TOOL_STRETCH = 0.43
-"""Least stretch of a thing whose handle is at the end opposite its front: it is 2.5 times as long as wide."""
+"""Minimum stretch of a thing whose handle is at the end opposite its front: an aspect ratio of 2.5."""
 
 SIDEWAYS = (math.pi / 4, 3 * math.pi / 4)
 """Angles in radians from the head of a thing between which it may face something with a side, as a knife with its edge.
@@ -140,7 +140,8 @@ class Poses:
         wanted
             Unit vectors: one direction of shape (2,), or those from each thing to m others, shape (n, m, 2).
         facing
-            Whether the things should face in that direction. A thing whose head alone is known may do so with a side.
+            Whether the things should face in that direction. A thing of which only the head is known may face the
+            direction with a side.
         handle
             Whether their handles should point there. That of a long thing is opposite its head.
 

@@ -68,7 +68,7 @@ def box_relations(
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, d), d = 2 or 3, in metres: x to the viewer's right, y away from the
+        Minimum and maximum corners, shape (n, 2, d), d = 2 or 3, in metres: x to the viewer's right, y away from the
         viewer, z up.
     vocabulary
         The relations to name the pairs by.
@@ -121,7 +121,7 @@ class SceneRelations:
     vocabulary: Relations
     nodes: tuple[str, ...]  # (n,)
     names: NDArray[np.int8]  # (n, n): relation indices, -1 on the diagonal
-    boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner
+    boxes: NDArray[np.float64] | None = None  # (n, 2, d): minimum and maximum corner
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     poses: Poses | None = None  # of the n objects; None: axes along the sides of the boxes, no fronts
 
@@ -277,7 +277,7 @@ def scene_relations(
         Names of the n objects. The order of the ids decides between equal or crossing boxes of one centre, so that the
         order of listing does not matter.
     boxes
-        Least and greatest corners in metres, shape (n, 2, d), d = 2 or 3.
+        Minimum and maximum corners in metres, shape (n, 2, d), d = 2 or 3.
     vocabulary
         The relations to name the pairs by.
     kinds
@@ -394,7 +394,7 @@ def cross_relations(
 def _related(
     boxes: NDArray[np.float64], ranks: NDArray[np.int64], rows: slice, vocabulary: Relations, tolerance: float
 ) -> tuple[list[NDArray[np.int8]], NDArray[np.int8]]:
-    """Return the same of some boxes (rows) with all; the name of each with itself is -1."""
+    """Return the relations of some boxes (rows) to all boxes; the name of a box with itself is -1."""
     codes, names = cross_relations(boxes[rows], boxes, (ranks[rows], ranks), vocabulary, tolerance)
     own = np.arange(len(boxes))[rows]
     names[np.arange(len(own)), own] = -1

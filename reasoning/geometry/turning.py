@@ -21,7 +21,7 @@ def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, d).
+        Minimum and maximum corners, shape (n, 2, d).
     angle
         Angle in radians, counterclockwise seen from above.
     mirrored

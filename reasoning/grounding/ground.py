@@ -234,7 +234,7 @@ def _pivotal(
     """Return the facts without which the answer would be different; None where not all facts could be examined.
 
     Also returns None where the description is probably of another scene: the likeliest maps without a fact do not show
-    whether that would still be so.
+    whether that would still be the case.
     """
     if alignment.posterior is None or not alignment.proved_best or alignment.of_another:
         return None

@@ -111,7 +111,7 @@ def different_facts(description: RelationGraph) -> int:
 
 
 def leaves_room_for_chains(description: RelationGraph, things: int, limit: float) -> bool:
-    """Say whether a grounding that samples marginals fits in memory.
+    """Return whether a grounding that samples marginals fits in memory.
 
     Parameters
     ----------

@@ -15,10 +15,10 @@ from deixis.ontology.things.kinds import spaced
 from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 LARGE, SMALL = 0.4, 0.12
-"""Usual length in metres from which on a thing is large, and below which it is small."""
+"""Usual length in metres at or above which a thing is large, and below which it is small."""
 
 LIGHT, DARK = 65.0, 45.0
-"""CIELAB lightness of a colour from which on it is light, and below which it is dark."""
+"""CIELAB lightness at or above which a colour is light, and below which it is dark."""
 
 IMITATIONS = {
     "stuffed": "stuffed animal",

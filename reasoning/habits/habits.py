@@ -38,19 +38,19 @@ BY_CHANCE = 1e-4
 decides little."""
 
 LEAST_REASON = 0.25
-"""Share of the decision from which on the rule behind it is named."""
+"""Minimum share of the decision at which the rule behind it is named."""
 
 SMALLEST = 3.0
 """Number added to the size of a concept, since the lexicon lacks some of its kinds."""
 
 MOST_COUNTED = 3
-"""Number of examples from which on further ones do not narrow a rule: a person's examples are not drawn at random."""
+"""Number of examples beyond which further ones do not narrow a rule: a person's examples are not drawn at random."""
 
 BEAM, SLACK = 60, 8.0
 """Descriptions kept in each round of the search; bits above the shortest one up to which a description counts."""
 
 STATED_EXAMPLES = 20
-"""Number of examples that a stated rule counts as."""
+"""Weight of a stated rule, as a number of examples."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """Relate boxes in a calculus: find the atom of every ordered pair.
 
-Boxes have shape (n, 2, d): least and greatest corner; x to the viewer's right, y away from the viewer, z up. Calculi of
-the plane (all except ``ba``) use x and y only.
+Boxes have shape (n, 2, d): minimum and maximum corner; x to the viewer's right, y away from the viewer, z up. Calculi
+of the plane (all except ``ba``) use x and y only.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
     Parameters
     ----------
     boxes
-        Boxes of shape (n, 2, d), d at least 2: least and greatest corner; x is east, y is north.
+        Boxes of shape (n, 2, d), d at least 2: minimum and maximum corner; x is east, y is north.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def cardinal_cones(boxes: NDArray[np.float64]) -> NDArray[np.int16]:
     Parameters
     ----------
     boxes
-        Boxes in the plane, shape (n, 2, 2): least and greatest corner, y to the north.
+        Boxes in the plane, shape (n, 2, 2): minimum and maximum corner, y to the north.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def relate(
     Parameters
     ----------
     boxes
-        Boxes of shape (n, 2, d): least and greatest corner.
+        Boxes of shape (n, 2, d): minimum and maximum corner.
     name
         The name of the calculus, one of RELATED.
     axis
@@ -219,7 +219,8 @@ class Related(Answer):
             return range(len(self.ids))
         if name not in self.ids:
             hint = nearest(name, self.ids)
-            raise UnknownTermError(f"nothing here is called '{name}'" + (f"; did you mean '{hint}'?" if hint else ""))
+            advice = f"did you mean '{hint}'?" if hint else f"there are: {', '.join(self.ids) or 'none'}"
+            raise UnknownTermError(f"there is no object '{name}'; {advice}")
         place = self.ids.index(name)
         return range(place, place + 1)
 

@@ -1,8 +1,8 @@
 """Base class of results that can be shown as JSON, text, a data frame, a picture, and in a notebook.
 
 Each type of answer derives from :class:`Answer`. Its rendering is registered by the name of its class in
-:mod:`deixis.report.renderers`, which is looked up when a method is called: so no module of the reasoning imports the
-command line, and no answer imports matplotlib before it is drawn.
+:mod:`deixis.report.renderers`, which is looked up when a method is called: so no reasoning module imports the command
+line, and no answer imports matplotlib before it is drawn.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ def count(number: int, noun: str) -> str:
 
 
 def share(part: int, total: int, noun: str) -> str:
-    """Return how many of all things are meant, as a noun phrase: *both facts*, *2 of 5 facts*.
+    """Return a part of a total as a noun phrase: *both facts*, *2 of 5 facts*.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ CLOCK = Clock()
 """Clock of all deadlines of a process."""
 
 LAST_SHARE = 0.1
-"""Share of a time limit that finding the reasons gets where the verdict has used all of it."""
+"""Share of a time limit that remains for the explanation if the verdict has used all of it."""
 
 LONGEST = 1_000_000.0
 """Longest time limit in seconds, 11 days; a longer one counts as none, because the system's waits cannot be as long."""

@@ -67,7 +67,7 @@ class KnowledgeStore(Closing):
         self._memory.require_usable()
 
     def exists(self) -> bool:
-        """Say whether there is a memory at the path.
+        """Return whether there is a memory at the path.
 
         Returns
         -------
@@ -226,7 +226,7 @@ class KnowledgeStore(Closing):
         self._meaning = None
 
     def forgetting(self, lesson: str) -> Commit:
-        """Return a function that removes one lesson, what follows from it only, and what it taught of words and sizes.
+        """Return a function that removes one lesson, what follows from it only, and its share in words and sizes.
 
         Parameters
         ----------

@@ -255,8 +255,8 @@ class Session(Closing):
         events
             Ids in the episodes of what the teacher said.
         episodes
-            Function that returns what the blackboard says of the lesson (:meth:`Blackboard.part`), which is written in
-            the same step.
+            Function that returns what the blackboard states about the lesson (:meth:`Blackboard.part`), which is
+            written in the same step.
 
         Returns
         -------
@@ -310,8 +310,8 @@ class Session(Closing):
         events
             Ids in the episodes of what the teacher said.
         episodes
-            Function that returns what the blackboard says of the lessons (:meth:`Blackboard.part`), which is written in
-            the same step.
+            Function that returns what the blackboard states about the lessons (:meth:`Blackboard.part`), which is
+            written in the same step.
 
         Returns
         -------
@@ -423,7 +423,7 @@ class Session(Closing):
         event
             Event in the episodes in which the teacher showed it, with their origin; None where they do not have it.
         episodes
-            What the blackboard says of it (:meth:`Blackboard.part`), which is written in the same step.
+            What the blackboard says about it (:meth:`Blackboard.part`), which is written in the same step.
 
         Returns
         -------
@@ -495,7 +495,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def remembers(self) -> bool:
-        """Say whether there is a memory at the path.
+        """Return whether there is a memory at the path.
 
         Returns
         -------
@@ -603,7 +603,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def forget(self, lesson: str) -> None:
-        """Remove one lesson, what follows from it only, and what it taught of words and sizes.
+        """Remove one lesson, what follows from it only, and its share in words and sizes.
 
         The views that it taught stay.
 
@@ -994,7 +994,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def has_views(self) -> bool:
-        """Say whether the memory has views.
+        """Return whether the memory has views.
 
         Returns
         -------

@@ -49,7 +49,7 @@ class ViewStore(Closing):
         self._memory.close()
 
     def exists(self) -> bool:
-        """Say whether the memory has views.
+        """Return whether the memory has views.
 
         Returns
         -------
@@ -362,7 +362,7 @@ def category_name(text: str) -> str:
     from deixis.reasoning.errors import SettingError
 
     if not isinstance(text, str):
-        raise SettingError(f"the name of a category must be a text, got {text!r}")
+        raise SettingError(f"the name of a category must be a string, got {text!r}")
     name = "_".join(text.split())
     if not name:
         raise SettingError("the name of a category must have at least one word, got none")

@@ -239,7 +239,7 @@ def test_an_invalid_scene_gets_an_error_with_the_valid_forms() -> None:
 
 
 def test_a_category_is_named_by_a_text(tmp_path: Path) -> None:
-    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="must be a text, got 3"):
+    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="must be a string, got 3"):
         session.teach(SCENE, "o1", 3)  # type: ignore[arg-type]
 
 

@@ -21,7 +21,7 @@ FLIPS = 2  # positions in each file
 
 
 def fill(store: ox.Store) -> None:
-    """Some hundred quads in two graphs, with long and short terms, and numbers of which all bytes are ones."""
+    """Add some hundred quads in two graphs, with long and short terms, and numbers whose bytes are all ones."""
     for number in range(-1, 100):
         subject, word = ox.NamedNode(f"https://example.org/thing/{number}"), "long " * (number % 40)
         for graph in (GraphName.ASSERTED, GraphName.LEARNED):

@@ -20,6 +20,14 @@ def test_docstrings_that_open_with_a_question_are_found(opening: str) -> None:
     assert found == f"module.py:2: docstring opens with '{opening}': say what it is or does"
 
 
+@pytest.mark.parametrize("opening", ["Least ratio of two sides", "Ratio of two sides from which a thing is long"])
+def test_thresholds_are_minimum_or_maximum_values(opening: str) -> None:
+    assert messages(f'RATIO = 2.0\n"""{opening}."""\n') == [
+        "module.py:2: docstring of a threshold: start with 'Minimum' or 'Maximum', then 'at which'"
+    ]
+    assert messages('LIKELY = 0.9\n"""Distribution from which samples are drawn."""\n') == []
+
+
 def test_function_docstrings_start_with_a_verb() -> None:
     assert messages('def area():\n    """Return the area."""\n') == []
     (found,) = messages('def area():\n    """The area."""\n')
@@ -38,7 +46,13 @@ def test_attribute_docstrings_are_checked() -> None:
     ]
 
 
-@pytest.mark.parametrize("wording", ["but for", "is none", "anew", "is told", "bears", "nobody"])
+@pytest.mark.parametrize(
+    "wording",
+    [
+        "but for", "is none", "anew", "is told", "bears", "nobody", "from which on", "been told", "if need be",
+        "ever smaller", "is learnt", "and the like", "returns the same for", "tells nothing of", "says nothing of",
+    ],
+)  # fmt: skip
 def test_wordings_are_found_in_comments_strings_and_pages(wording: str) -> None:
     assert len(messages(f"x = 1  # this {wording} that\n")) == 1
     assert len(messages(f'x = f"{{1}} this {wording} that"\n')) == 1
@@ -46,7 +60,13 @@ def test_wordings_are_found_in_comments_strings_and_pages(wording: str) -> None:
     assert found.line == 2
 
 
-@pytest.mark.parametrize("text", ["the value is None", "there is no fact", "it is no longer there", "a teddy bear"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "the value is None", "there is no fact", "it is no longer there", "a teddy bear", "any more facts",
+        "and others like it", "the same result", "tells them apart",
+    ],
+)  # fmt: skip
 def test_similar_wordings_are_accepted(text: str) -> None:
     assert messages(f"x = 1  # {text}\n") == []
 

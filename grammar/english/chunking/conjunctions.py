@@ -25,9 +25,9 @@ class JointChunker(VerbChunker):
         norm, after = self.norms[at], self.norms[at + 1]
         previous = self._previous()
         before = self.chunks[-2].type if len(self.chunks) > 1 else ""
-        told = previous in FINITE or previous == "DO" or (previous in ("PART", "ADJP") and before == "BE")
-        told = told or (previous in ("ADV", "ADVERB") and before in ("VERB", "TVERB"))
-        if norm == "that" and told and (after in PRONOUNS or self.nouns.starts(at + 1)):
+        after_verb = previous in FINITE or previous == "DO" or (previous in ("PART", "ADJP") and before == "BE")
+        after_verb = after_verb or (previous in ("ADV", "ADVERB") and before in ("VERB", "TVERB"))
+        if norm == "that" and after_verb and (after in PRONOUNS or self.nouns.starts(at + 1)):
             return Chunk("COMPLEMENT", at, at + 1)
         if norm == "that" and previous == "AND" and self._clause_follows(at + 1):
             if any(chunk.type == "COMPLEMENT" for chunk in self.chunks):
@@ -127,8 +127,8 @@ class JointChunker(VerbChunker):
         if norm == "than":
             return Chunk("THAN", at, at + 1)
         form = self._verbs.get(after)
-        told = form is not None and form.form in ("past", "participle") and previous in ("COMMA", "")
-        if norm == "as" and told and self.norms[at + 2] not in IS_FORMS:
+        participial = form is not None and form.form in ("past", "participle") and previous in ("COMMA", "")
+        if norm == "as" and participial and self.norms[at + 2] not in IS_FORMS:
             return Chunk("ADVERB", at, at + 2, "as told")  # 'as left on Friday'
         if norm == "as" and previous == "COMMA" and self._clause_follows(at + 1) and after not in PRONOUNS:
             return Chunk("SUB", at, at + 1, "because")  # 'behind the jar, as guests should not see it'

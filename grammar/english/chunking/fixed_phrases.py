@@ -480,7 +480,7 @@ class FixedPhraseChunker(JointChunker):
         return i, VerbGroup("be", "be", "finite", modal, positive, adverbs=tuple(adverbs))
 
     def _wish(self, at: int) -> int | None:
-        """Return the end of *you want (to pick)*, *you are looking for*: such words say nothing of places."""
+        """Return the end of *you want (to pick)*, *you are looking for*: such words say nothing about places."""
         i = at + (self.norms[at] == "that")
         if self.norms[i] not in ("you", "we", "i"):
             return None

@@ -163,7 +163,7 @@ class NounFinder:
         )
 
     def is_degree_word(self, at: int) -> bool:
-        """Return True for *closest*, *furthest*, *closer* and the like.
+        """Return True for *closest*, *furthest*, *closer* and similar words.
 
         Parameters
         ----------

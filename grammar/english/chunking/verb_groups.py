@@ -149,8 +149,8 @@ class VerbChunker(RelatorChunker):
         if form is None or last is None or last.type not in FINITE or not self._predicate_after(at):
             return None
         if last.value.lemma == "be" and self.norms[at] in ("put", "set", "laid", "stood", "hung"):
-            told = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
-            return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if told else None
+            coordinated = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
+            return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if coordinated else None
         spatial = form.form == "base" and form.kind in ("posture", "lean", "face", "point")
         placed = last.value.lemma == "be" and self.chunks[-2].type == "NP"  # 'it should be on the tray and rest'
         if last.value.modal is None or not spatial or placed:
@@ -200,8 +200,8 @@ class VerbChunker(RelatorChunker):
         helped = i > first
         if i in self.nouns.verbs and (tried := self._tried(at, i, group)) is not None:
             return tried
-        told = self.norms[i + 1] == "that" or (norm in SAYING and self.norms[i + 1] in _TOLD)
-        if norm in REPORTS | SAYING and told and self._previous() == "NP":
+        reporting = self.norms[i + 1] == "that" or (norm in SAYING and self.norms[i + 1] in _TOLD)
+        if norm in REPORTS | SAYING and reporting and self._previous() == "NP":
             return Chunk(
                 "COMPLEMENT",
                 at,
@@ -441,8 +441,10 @@ class VerbChunker(RelatorChunker):
     def _inverted_in_statement(self, at: int, end: int) -> bool:
         """Return True for *stand* after a place and before a plural, in a sentence of statements about things."""
         last = next((c for c in reversed(self.chunks) if c.type in FINITE | {"PUT", "CUT", "DO"}), None)
-        told = last is not None and last.type in FINITE and self.norms[at] in ("stand", "hang", "rest", "lean", "sit")
-        found = self.nouns.phrase(end, "VERB") if told and self._only_places() and self.nouns.starts(end) else None
+        resting = (
+            last is not None and last.type in FINITE and self.norms[at] in ("stand", "hang", "rest", "lean", "sit")
+        )
+        found = self.nouns.phrase(end, "VERB") if resting and self._only_places() and self.nouns.starts(end) else None
         return found is not None and found[1] is not None and found[1].plural and bool(found[1].head)
 
     def _goes_on_with(self, at: int) -> bool:

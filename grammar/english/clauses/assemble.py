@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from deixis.grammar.english.chunking.chunk import Chunk, VerbGroup
 from deixis.grammar.english.clauses.build import flat, viewpoint_of
-from deixis.grammar.english.clauses.built import Built, Noun, Said, Verb, misunderstood, notes
+from deixis.grammar.english.clauses.built import Built, Noun, Predication, Verb, misunderstood, notes
 from deixis.grammar.english.clauses.joints import Segment
 from deixis.grammar.english.clauses.places import HOURS
 from deixis.grammar.english.confidence import Guess
@@ -166,14 +166,14 @@ class Assembly:
         if built.shape == "existential":
             built, looking = _looking(built, start)
             self.viewpoint = self.viewpoint if looking is None else _joined(self.viewpoint, looking)
-        said, fronted = _split_frames(built.said)
+        predications, fronted = _split_frames(built.predications)
         if fronted is not None:
             self.viewpoint = _joined(self.viewpoint, fronted)
             link = ""
-        elif built.said and link in ("when", "if", "while", "as"):
-            frame = viewpoint_of(tuple(p for part in built.said for p in part.predicates))
+        elif built.predications and link in ("when", "if", "while", "as"):
+            frame = viewpoint_of(tuple(p for part in built.predications for p in part.predicates))
             if frame is not None:
-                self.viewpoint, said, link = _joined(self.viewpoint, frame), (), ""
+                self.viewpoint, predications, link = _joined(self.viewpoint, frame), (), ""
         if link in ("before", "after") and built.shape == "statement":
             return
         last = self.clauses[-1] if self.clauses else None
@@ -196,13 +196,13 @@ class Assembly:
         if link == "in case" and self.clauses:
             return  # a reason: 'a copy is in the box in case the first is lost'
         if link == "while" and self.clauses and built.verbs and built.verbs[0].group.lemma == "be":
-            told = [p for verb in built.verbs for part in verb.said for p in part.predicates]
+            told = [p for verb in built.verbs for part in verb.predications for p in part.predicates]
             if told and all(p.relation in _CONDITIONS and not p.arguments for p in told):
                 self._conditional(span, link)  # 'do not put it on the scale while it is hot'
                 return
         if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever", "in case") and (
             built.verbs
-            or (built.shape == "fragment" and not built.said and link != "as")
+            or (built.shape == "fragment" and not built.predications and link != "as")
             or (built.shape == "said" and link in ("unless", "whether"))
         ):
             self._conditional(span, link)
@@ -238,13 +238,13 @@ class Assembly:
                 self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
             return
         if built.shape in ("fragment", "search", "other"):
-            self._fragment(built, subject, said, link, span, mood)
+            self._fragment(built, subject, predications, link, span, mood)
             return
         if built.shape == "said" and subject is None and self.is_lost and link == "," and not built.verbs:
             misunderstood(span, "the clause that this belongs to is not understood")
             return
         if built.shape == "said" and subject is None:
-            self._said(built, said, link, span, mood)
+            self._said(built, predications, link, span, mood)
             return
         if subject is None:
             return
@@ -254,7 +254,8 @@ class Assembly:
         past = link == "and" and bool(self.clauses) and self.clauses[-1].past
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
         people = last_word(subject.phrase.head) in PEOPLE and all(
-            v.group.lemma in _GETTING or (v.group.lemma in _MEETING and v.group.positive and (said or v.said))
+            v.group.lemma in _GETTING
+            or (v.group.lemma in _MEETING and v.group.positive and (predications or v.predications))
             for v in verbs
         )
         own = subject.phrase.pronoun in ("he", "she") and not _OWN.search(self.text, *span)
@@ -263,7 +264,7 @@ class Assembly:
         held = verbs[-1].thing if verbs[-1].group.lemma in _BEARING else None
         self.borne = held.phrase if held is not None and held.phrase.head else None
         for i, verb in enumerate(verbs):
-            front = said if i == 0 else ()
+            front = predications if i == 0 else ()
             none = subject.phrase.pronoun == "nothing" or subject.phrase.determiner == "no"
             if none and verb.thing is None and verb.group.kind in ("other", "unknown"):
                 misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
@@ -276,7 +277,7 @@ class Assembly:
                 verb.group.lemma == "leave"
                 and verb.thing is not None
                 and not front
-                and not verb.said
+                and not verb.predications
                 and bool(subject.phrase.head)
             )
             if departs and last_word(subject.phrase.head) not in PEOPLE:
@@ -306,7 +307,7 @@ class Assembly:
                 elif subject.phrase.pronoun == "nothing":
                     misunderstood(span, "a denial of all does not say where it is", "say where it is, or is not")
                     continue
-                if not moved.said and not front and verb.group.lemma not in _MEETING:
+                if not moved.predications and not front and verb.group.lemma not in _MEETING:
                     misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
                     continue
                 meets = person and verb.group.lemma in _MEETING
@@ -345,20 +346,20 @@ class Assembly:
                 bare = replace(other, predicates=())
                 self.clauses.append(Clause(bare, other.predicates, other.span, guesses=guesses))
             else:
-                misunderstood(other.span, "nothing is said of this", "say where it is")
+                misunderstood(other.span, "nothing is said about this", "say where it is")
         if self.front:
             span = (self.front[0].span[0], self.front[-1].span[1])
             front, self.front = self.front, ()
             mood = Mood.QUESTION if self.asks else Mood.STATEMENT
-            said, absolute = _absolutes(list(front))
-            self._append(Clause(None, tuple(said), span, mood, step=self.raw.step), "")
+            predicates, absolute = _absolutes(list(front))
+            self._append(Clause(None, tuple(predicates), span, mood, step=self.raw.step), "")
             for noun, places in absolute:
                 self._append(Clause(noun, places, span, mood, step=self.raw.step), "")
         if self.condition is not None and not self.clauses and fragment is None:
             start = self.raw.start
             misunderstood((start, self.raw.end), "a condition without what it is a condition of")
         if not self.clauses and fragment is None and self.viewpoint is None and not notes.get():
-            misunderstood((self.raw.start, self.raw.end), "this says nothing of where a thing is")
+            misunderstood((self.raw.start, self.raw.end), "this says nothing about where a thing is")
         guesses = frozenset() if fragment is None else self.guesses_of_fragments.get(fragment.span, frozenset())
         return Found((*self.supposed, *self.clauses), fragment, self.viewpoint, guesses)
 
@@ -367,19 +368,19 @@ class Assembly:
     def _frame(self, built: Built, link: str, span: Span) -> Viewpoint | None:
         """Return the viewpoint that a clause states and does nothing else: *if you are facing the bed*."""
         person = built.subject is not None and built.subject.phrase.pronoun in _PEOPLE
-        said = [p for verb in built.verbs for part in verb.said for p in part.predicates]
-        said += [p for part in built.said for p in part.predicates]
+        predicates = [p for verb in built.verbs for part in verb.predications for p in part.predicates]
+        predicates += [p for part in built.predications for p in part.predicates]
         if built.shape == "statement" and person:
-            if link in ("if", "when", "while", "as", "once", "where") or any(p.relation in _FRAMES for p in said):
+            if link in ("if", "when", "while", "as", "once", "where") or any(p.relation in _FRAMES for p in predicates):
                 entering = any(verb.group.lemma in ENTER_VERBS for verb in built.verbs)
-                found = viewpoint_of(tuple(said))
+                found = viewpoint_of(tuple(predicates))
                 thing = next((verb.thing.phrase for verb in built.verbs if verb.thing is not None), None)
                 seen = all(v.group.lemma not in _HANDLING and v.group.kind != "unknown" for v in built.verbs)
                 if thing is not None and seen:
                     turned = any(verb.group.lemma in FACE_VERBS or verb.group.kind == "face" for verb in built.verbs)
                     found = found or Viewpoint(span)
                     found = replace(found, facing=thing) if turned else replace(found, at=found.at or thing)
-                if found is None and entering and not said and (not self.clauses or link in ("as", "when")):
+                if found is None and entering and not predicates and (not self.clauses or link in ("as", "when")):
                     found = Viewpoint(span)  # 'as you come in'
                 if found is not None:
                     return replace(found, span=span, entering=entering)
@@ -391,16 +392,16 @@ class Assembly:
             and subject.owner is not None
             and subject.owner.pronoun in (*_PEOPLE, "one")
         ):
-            behind = next((p.arguments[0] for p in said if p.arguments), subject.of)
+            behind = next((p.arguments[0] for p in predicates if p.arguments), subject.of)
             return None if behind is None else Viewpoint(span, back=behind)
-        if built.shape == "said" and said and not built.verbs:
-            framing = [p for p in said if p.relation in _FRAMES]
+        if built.shape == "said" and predicates and not built.verbs:
+            framing = [p for p in predicates if p.relation in _FRAMES]
             if (
                 link in ("if", "when", "while", "as")
                 or (framing and not self.clauses and not self.fragments)
-                or (framing and said[0] is framing[0] and said[0].relation == "from")
+                or (framing and predicates[0] is framing[0] and predicates[0].relation == "from")
             ):
-                found = viewpoint_of(tuple(said))
+                found = viewpoint_of(tuple(predicates))
                 return None if found is None else replace(found, span=span)
         return None
 
@@ -444,7 +445,7 @@ class Assembly:
     # fragments
 
     def _fragment(
-        self, built: Built, noun: Noun | None, said: tuple[Said, ...], link: str, span: Span, mood: Mood
+        self, built: Built, noun: Noun | None, predications: tuple[Predication, ...], link: str, span: Span, mood: Mood
     ) -> None:
         assert noun is not None
         phrase = noun.phrase
@@ -454,7 +455,7 @@ class Assembly:
         if phrase.negated and phrase.head and self.clauses:
             denied = tuple(replace(p, positive=not p.positive) for p in phrase.predicates)
             phrase = replace(phrase, negated=False, predicates=denied)
-        more = (*noun.extra, *(p for part in said for p in part.predicates))
+        more = (*noun.extra, *(p for part in predications for p in part.predicates))
         if self.clauses and self.text[: span[0]].rstrip().casefold().endswith("because"):
             misunderstood(span, "a reason without a verb does not say where something is")
             return  # 'because the postman trips over it'
@@ -477,7 +478,7 @@ class Assembly:
                 return
             if self.clauses or phrase.pronoun in _PEOPLE:
                 if phrase.head or phrase.adjectives or phrase.members:
-                    misunderstood(phrase.span, "nothing is said of this", "say where it is")
+                    misunderstood(phrase.span, "nothing is said about this", "say where it is")
                 return
         more, self.front = (*self.front, *more), ()
         if more:
@@ -528,12 +529,12 @@ class Assembly:
     def _list(self, phrase: NounPhrase, more: tuple[Predicate, ...], span: Span) -> bool:
         """Take in a list after a colon: *from left to right: a cup, a jug*, *in front of it, a row: a cup, a jug*."""
         if self.front:
-            said, self.front = (*self.front, *more), ()
-            self._append(Clause(phrase, said, span, step=self.raw.step), ":")
+            shared, self.front = (*self.front, *more), ()
+            self._append(Clause(phrase, shared, span, step=self.raw.step), ":")
             return True
         if self.fragments and [p.relation for p in self.fragments[-1].predicates] == ["row"]:
-            said = (*self.fragments.pop().predicates, *more)  # 'shelf, left to right: …'
-            self._append(Clause(phrase, said, span, step=self.raw.step), ":")
+            shared = (*self.fragments.pop().predicates, *more)  # 'shelf, left to right: …'
+            self._append(Clause(phrase, shared, span, step=self.raw.step), ":")
             return True
         if self.fragments and self.fragments[-1].head in ("row", "line", "circle", "list", "stack"):
             row = self.fragments.pop()
@@ -564,23 +565,27 @@ class Assembly:
             return True
         return False
 
-    def _said(self, built: Built, said: tuple[Said, ...], link: str, span: Span, mood: Mood) -> None:
-        """Take in predicates without a subject: they are said of the subject of the clause before."""
+    def _said(self, built: Built, predications: tuple[Predication, ...], link: str, span: Span, mood: Mood) -> None:
+        """Take in predicates without a subject: they are said about the subject of the clause before."""
         last = self.clauses[-1] if self.clauses else None
         past = last is not None and last.past
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
         waits = last is None and self.sought is None and not self.fragments and not built.verbs
         waits = waits or (self.opens_list and not built.verbs)
         waits = waits or (self.leads and link in (";", "and", "then", "") and not built.verbs)
-        if waits and not any(part.choice for part in said):
-            self.front += tuple(p for part in said for p in part.predicates)
+        if waits and not any(part.choice for part in predications):
+            self.front += tuple(p for part in predications for p in part.predicates)
             return
         if last is None and self.sought is not None:
-            predicates = tuple(p for part in said for p in part.predicates) + tuple(p for v in verbs for p in flat(v))
+            predicates = tuple(p for part in predications for p in part.predicates) + tuple(
+                p for v in verbs for p in flat(v)
+            )
             self.sought = replace(self.sought, predicates=(*self.sought.predicates, *predicates))
             return
         if last is None and self.fragments:
-            predicates = tuple(p for part in said for p in part.predicates) + tuple(p for v in verbs for p in flat(v))
+            predicates = tuple(p for part in predications for p in part.predicates) + tuple(
+                p for v in verbs for p in flat(v)
+            )
             joined = self.fragments[-1]
             self.fragments[-1] = replace(joined, predicates=(*joined.predicates, *predicates))
             return
@@ -589,8 +594,8 @@ class Assembly:
             subject = self.borne  # 'the shelf holds a lamp, in the middle'
         for verb in verbs:
             noun = None if subject is None else Noun(subject)
-            self._clause("said", noun, verb, said, span, mood, None, link)
-            said = ()
+            self._clause("said", noun, verb, predications, span, mood, None, link)
+            predications = ()
 
     # clauses
 
@@ -602,7 +607,7 @@ class Assembly:
         )
 
     def _of_the_thing(self, verb: Verb, subject: Noun) -> tuple[Verb, Noun]:
-        """Return *I have a lamp on the desk*, *you keep it under the mug* as said of the lamp."""
+        """Return *I have a lamp on the desk*, *you keep it under the mug* as a statement about the lamp."""
         thing = verb.thing
         assert thing is not None
         phrase = thing.phrase
@@ -613,10 +618,12 @@ class Assembly:
         elif shared:
             phrase = replace(phrase, predicates=())
         here = (*thing.extra, *shared)
-        return replace(verb, thing=None, said=(Said(here), *verb.said) if here else verb.said), Noun(phrase)
+        return replace(
+            verb, thing=None, predications=(Predication(here), *verb.predications) if here else verb.predications
+        ), Noun(phrase)
 
     def _clause(
-        self, shape: str, subject: Noun | None, verb: Verb, front: tuple[Said, ...], span: Span, mood: Mood,
+        self, shape: str, subject: Noun | None, verb: Verb, front: tuple[Predication, ...], span: Span, mood: Mood,
         hedge: VerbGroup | None, link: str,
     ) -> None:  # fmt: skip
         group = verb.group
@@ -628,7 +635,7 @@ class Assembly:
             shape in ("question", "existential", "verbless", "inverted")
             and phrase is not None
             and not predicates
-            and not verb.said
+            and not verb.predications
         ):
             predicates, phrase = [*phrase.predicates], replace(phrase, predicates=())
         if shape == "existential" and not group.positive and phrase is not None and not phrase.negated:
@@ -644,7 +651,7 @@ class Assembly:
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
         main = flat(replace(verb, thing=None))
-        for part in verb.said:
+        for part in verb.predications:
             if part.choice:
                 chosen = (
                     part.predicates if positive else tuple(replace(p, positive=not p.positive) for p in part.predicates)
@@ -664,7 +671,7 @@ class Assembly:
             absolute += [(a, shared) for p in made if "too" in p.adverbs for a in p.arguments]
             made = [p for p in made if "too" not in p.adverbs]
         if verb.thing is not None:
-            of_thing = flat(replace(verb, said=(), nominal=None))
+            of_thing = flat(replace(verb, predications=(), nominal=None))
             if group.lemma not in TRANSITIVE_RELATIONS:  # 'I have opened it, with the lamp to my left'
                 of_thing, more = _absolutes(of_thing)
                 absolute = more + absolute
@@ -696,15 +703,15 @@ class Assembly:
             condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
         )  # fmt: skip
         self._append(clause, link)
-        for noun, said in absolute:
-            self._append(replace(clause, subject=noun, predicates=said, choices=(), existential=False), ",")
+        for noun, modifiers in absolute:
+            self._append(replace(clause, subject=noun, predicates=modifiers, choices=(), existential=False), ",")
 
     def _added_about(self, phrase: NounPhrase) -> tuple[Predicate, ...]:
         """Return what a relative clause after a comma says: *I love the clock, which hangs over the door*."""
-        said = phrase.predicates
-        if not said or not self.text[: said[0].span[0]].rstrip().endswith((", which", ", who")):
+        predicates = phrase.predicates
+        if not predicates or not self.text[: predicates[0].span[0]].rstrip().endswith((", which", ", who")):
             return ()
-        return said
+        return predicates
 
     def _append(self, clause: Clause, link: str) -> None:
         kept = []
@@ -747,13 +754,13 @@ def _frame_of_report(before: tuple[Chunk, ...]) -> VerbGroup | None:
 
 def _turns_over(verb: Verb) -> bool:
     """Return True for *I turned one jar upside down*."""
-    said = [p for part in verb.said for p in part.predicates]
-    said += verb.thing.phrase.predicates if verb.thing is not None else ()
-    return verb.group.lemma in _TURNING and any(p.relation == "upside_down" for p in said)
+    predicates = [p for part in verb.predications for p in part.predicates]
+    predicates += verb.thing.phrase.predicates if verb.thing is not None else ()
+    return verb.group.lemma in _TURNING and any(p.relation == "upside_down" for p in predicates)
 
 
 def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple[NounPhrase, tuple[Predicate, ...]]]]:
-    """Separate *with G on the right* from what is said of the subject: it says where G is."""
+    """Separate *with G on the right* from what is said about the subject: it says where G is."""
     kept, absolute = [], []
     for predicate in predicates:
         phrase = predicate.arguments[0] if predicate.relation == "with" and predicate.arguments else None
@@ -767,19 +774,21 @@ def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple
 def _looking(built: Built, start: int) -> tuple[Built, Viewpoint | None]:
     """Separate the viewpoint before *there is*: *looking towards the door, there are two closets*."""
     verb = built.verbs[0]
-    first = verb.said[0].predicates if verb.said else ()
+    first = verb.predications[0].predicates if verb.predications else ()
     if not first or first[0].span[0] > start or first[0].relation not in _FRAMES:
         return built, None
-    return replace(built, verbs=(replace(verb, said=verb.said[1:]), *built.verbs[1:])), viewpoint_of(first)
+    return replace(built, verbs=(replace(verb, predications=verb.predications[1:]), *built.verbs[1:])), viewpoint_of(
+        first
+    )
 
 
-def _split_frames(said: tuple[Said, ...]) -> tuple[tuple[Said, ...], Viewpoint | None]:
+def _split_frames(predications: tuple[Predication, ...]) -> tuple[tuple[Predication, ...], Viewpoint | None]:
     """Separate the viewpoint from what stands before a clause: *facing the window*, *from the door*."""
-    top = [p for part in said for p in part.predicates]
+    top = [p for part in predications for p in part.predicates]
     nested = [q for p in top for argument in p.arguments for q in argument.predicates if q.relation == "facing"]
     if not nested and not any(p.relation in _FRAMES for p in top):
-        return said, None
-    everything = tuple(p for part in said for p in part.predicates)
+        return predications, None
+    everything = tuple(p for part in predications for p in part.predicates)
     return (), viewpoint_of(everything)
 
 

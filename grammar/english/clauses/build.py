@@ -9,7 +9,7 @@ from typing import Any
 from lark import Transformer, v_args
 
 from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
-from deixis.grammar.english.clauses.built import Built, Noun, Said, Verb, misunderstood, union
+from deixis.grammar.english.clauses.built import Built, Noun, Predication, Verb, misunderstood, union
 from deixis.grammar.english.clauses.places import directions_of, is_place, place
 from deixis.grammar.english.clauses.predicates import (
     AWAY_FROM,
@@ -77,31 +77,38 @@ class Builder(Transformer[Any, Built]):
         """Return a subject with its verbs."""
         return Built("statement", top, verbs)
 
-    def inverted(self, said: tuple[Said, ...], verb: Chunk, more: tuple[Predicate, ...] | None, top: Noun) -> Built:
+    def inverted(
+        self, predications: tuple[Predication, ...], verb: Chunk, more: tuple[Predicate, ...] | None, top: Noun
+    ) -> Built:
         """Return *to the left of the plate lies the fork*."""
         if more:
-            said = (*said, Said(more))
+            predications = (*predications, Predication(more))
         if verb.type == "VERB":
-            said = moved(verb.value, said, verb.span)
-        return Built("inverted", top, (Verb(verb.value, said, verb.span),))
+            predications = moved(verb.value, predications, verb.span)
+        return Built("inverted", top, (Verb(verb.value, predications, verb.span),))
 
-    def verbless(self, said: tuple[Said, ...], top: Noun) -> Built:
+    def verbless(self, predications: tuple[Predication, ...], top: Noun) -> Built:
         """Return *next to it a small cactus*."""
-        return Built("verbless", top, (), said)
+        return Built("verbless", top, (), predications)
 
     def existential(
-        self, before: tuple[Said, ...] | None, there: Chunk, be: Chunk, top: Noun | None, after: tuple[Said, ...] | None
+        self,
+        before: tuple[Predication, ...] | None,
+        there: Chunk,
+        be: Chunk,
+        top: Noun | None,
+        after: tuple[Predication, ...] | None,
     ) -> Built:
         """Return *there is a cup on the tray*."""
         return Built("existential", top, (Verb(be.value, (*(before or ()), *(after or ())), be.span),))
 
-    def command(self, put: Chunk, raws: Noun, said: tuple[Said, ...] | None) -> Built:
+    def command(self, put: Chunk, raws: Noun, predications: tuple[Predication, ...] | None) -> Built:
         """Return *put the cup on the tray*."""
         group: VerbGroup = put.value
         if group.kind not in ("posture", "lean", "face", "point"):
             group = replace(group, kind="posture")
-        if group.lemma == "surround" and said:
-            said = tuple(
+        if group.lemma == "surround" and predications:
+            predications = tuple(
                 replace(
                     part,
                     predicates=tuple(
@@ -109,21 +116,25 @@ class Builder(Transformer[Any, Built]):
                         for p in part.predicates
                     ),
                 )
-                for part in said
+                for part in predications
             )
-        said = _with_contents(raws.phrase, said)
-        if said and (group.lemma in WRAPPING or group.lemma in _FASTENING):
-            said = tuple(replace(part, predicates=by_means(group.lemma, raws.phrase, part.predicates)) for part in said)
-        if group.lemma in MOVING and said:
-            said = tuple(
+        predications = _with_contents(raws.phrase, predications)
+        if predications and (group.lemma in WRAPPING or group.lemma in _FASTENING):
+            predications = tuple(
+                replace(part, predicates=by_means(group.lemma, raws.phrase, part.predicates)) for part in predications
+            )
+        if group.lemma in MOVING and predications:
+            predications = tuple(
                 replace(
                     part,
                     predicates=tuple(destination(p) for p in part.predicates),
                 )
-                for part in said
+                for part in predications
             )
-        said = with_support(group, said or ())
-        return Built("command", raws, (Verb(group, moved(group, said, put.span) if said else (), put.span),))
+        predications = with_support(group, predications or ())
+        return Built(
+            "command", raws, (Verb(group, moved(group, predications, put.span) if predications else (), put.span),)
+        )
 
     def other(self, do: Chunk, top: Noun) -> Built:
         """Return a command that does not put anything anywhere: *open the box on the tray*."""
@@ -133,9 +144,9 @@ class Builder(Transformer[Any, Built]):
         """Return *choose the chair next to the door*."""
         return Built("search", top, (Verb(find.value, (), find.span),))
 
-    def whether(self, be: Chunk, top: Noun, said: tuple[Said, ...] | None) -> Built:
+    def whether(self, be: Chunk, top: Noun, predications: tuple[Predication, ...] | None) -> Built:
         """Return *is the knife to the left of the fork*."""
-        return Built("question", top, (Verb(be.value, said or (), be.span),))
+        return Built("question", top, (Verb(be.value, predications or (), be.span),))
 
     def asked(self, be: Chunk, top: Noun, verbs: tuple[Verb, ...]) -> Built:
         """Return *can the cup be on the tray*."""
@@ -145,17 +156,17 @@ class Builder(Transformer[Any, Built]):
         """Return *is there a cup on the tray*."""
         return Built("question", top, (Verb(be.value, (), be.span),))
 
-    def where(self, where: Chunk, be: Chunk, top: Noun, said: tuple[Said, ...] | None) -> Built:
+    def where(self, where: Chunk, be: Chunk, top: Noun, predications: tuple[Predication, ...] | None) -> Built:
         """Return *where is the fork*."""
-        return Built("question", top, (Verb(be.value, said or (), be.span),))
+        return Built("question", top, (Verb(be.value, predications or (), be.span),))
 
-    def fronted(self, said: tuple[Said, ...], joint: Chunk, clause: Built) -> Built:
+    def fronted(self, predications: tuple[Predication, ...], joint: Chunk, clause: Built) -> Built:
         """Return a clause with what stands before its comma: *in the corner, a lamp*."""
-        return replace(clause, said=(*said, *clause.said))
+        return replace(clause, predications=(*predications, *clause.predications))
 
-    def fronted_statement(self, said: tuple[Said, ...], clause: Built) -> Built:
+    def fronted_statement(self, predications: tuple[Predication, ...], clause: Built) -> Built:
         """Return *in the corner I have a lamp*."""
-        return replace(clause, said=(*said, *clause.said))
+        return replace(clause, predications=(*predications, *clause.predications))
 
     def said(self, content: Any) -> Built:
         """Return predicates without a subject."""
@@ -172,22 +183,24 @@ class Builder(Transformer[Any, Built]):
         chunk = parts[0]
         group: VerbGroup = chunk.value
         if chunk.type == "BE":
-            _, nominal, said = parts
+            _, nominal, predications = parts
             noun = nominal
-            shown = said or ()
+            shown = predications or ()
             if noun is not None and noun.extra and noun.phrase.head not in ("area", "part", "section", "spot", "place"):
-                shown = (Said(noun.extra), *shown)
+                shown = (Predication(noun.extra), *shown)
             return Verb(group, shown, chunk.span, noun)
         if chunk.type == "VERB":
-            said = moved(group, with_support(group, parts[1] or ()), chunk.span)
-            return Verb(group, said, chunk.span)
-        _, things, said = parts
-        if group.lemma in MOVING and said:
-            said = tuple(replace(part, predicates=tuple(map(destination, part.predicates))) for part in said)
+            predications = moved(group, with_support(group, parts[1] or ()), chunk.span)
+            return Verb(group, predications, chunk.span)
+        _, things, predications = parts
+        if group.lemma in MOVING and predications:
+            predications = tuple(
+                replace(part, predicates=tuple(map(destination, part.predicates))) for part in predications
+            )
         if group.lemma in MOVING:
             thing = replace(things.phrase, predicates=tuple(map(destination, things.phrase.predicates)))
             things = Noun(thing, tuple(map(destination, things.extra)))
-        return Verb(group, said or (), chunk.span, thing=things)
+        return Verb(group, predications or (), chunk.span, thing=things)
 
     def nominal(self, nps: Noun, *joined: Any) -> Noun:
         """Return the noun phrase after *is* or after a transitive verb."""
@@ -370,7 +383,7 @@ class Builder(Transformer[Any, Built]):
 
     # predicates
 
-    def preds(self, *parts: Any) -> tuple[Said, ...]:
+    def preds(self, *parts: Any) -> tuple[Predication, ...]:
         """Return predicates, grouped by their joints."""
         groups: list[tuple[str, list[Any]]] = [("", [])]
         for part in parts:
@@ -385,12 +398,12 @@ class Builder(Transformer[Any, Built]):
             if aim in ("pointing", "facing") and denied.relation == "at" and not denied.positive:
                 group[0] = (replace(denied, relation=aim), *group[0][1:])  # 'pointing at it, not at me'
         made = [(link, merged(tuple(group), check=False)) for link, group in groups]
-        found: list[Said] = []
+        found: list[Predication] = []
         for link, predicates in _shared(made):
             others = [p for p in predicates if _OR in p.adverbs]
             kept = tuple(p for p in predicates if _OR not in p.adverbs)
-            found.append(Said(kept, link == "or", link == "but"))
-            found += [Said((replace(p, adverbs=tuple(a for a in p.adverbs if a != _OR)),), True) for p in others]
+            found.append(Predication(kept, link == "or", link == "but"))
+            found += [Predication((replace(p, adverbs=tuple(a for a in p.adverbs if a != _OR)),), True) for p in others]
         return tuple(found)
 
     def pp(self, prep: Chunk, noun: Noun, than: Chunk | None, other: Noun | None) -> tuple[Predicate, ...]:
@@ -630,9 +643,9 @@ class Builder(Transformer[Any, Built]):
         """Return the predicates of *that stands on the tray*."""
         return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in flat(verb))
 
-    def reduced(self, rel: Chunk, said: tuple[Said, ...]) -> tuple[Predicate, ...]:
+    def reduced(self, rel: Chunk, predications: tuple[Predication, ...]) -> tuple[Predicate, ...]:
         """Return the predicates of *that next to the tray*."""
-        return tuple(p for part in said for p in part.predicates)
+        return tuple(p for part in predications for p in part.predicates)
 
     def object_relative(self, rel: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that the cup stands on* and *which I keep under the mug*."""
@@ -652,18 +665,18 @@ class Builder(Transformer[Any, Built]):
         return tuple(replace(p, subject_part=noun.phrase) for p in flat(verb))
 
 
-def _with_contents(thing: NounPhrase, said: tuple[Said, ...] | None) -> tuple[Said, ...] | None:
+def _with_contents(thing: NounPhrase, predications: tuple[Predication, ...] | None) -> tuple[Predication, ...] | None:
     """Return the place after *place the bowl with rice to the right* as that of the bowl, and not of the rice."""
-    first = said[0].predicates[:1] if said else ()
+    first = predications[0].predicates[:1] if predications else ()
     held = first[0].arguments[0] if first and first[0].relation == "with" and len(first[0].arguments) == 1 else None
-    alone = said is not None and len(said) == 1 and len(said[0].predicates) == 1
+    alone = predications is not None and len(predications) == 1 and len(predications[0].predicates) == 1
     bare = held is not None and held.determiner is None and held.count is None and held.owner is None
-    if said is None or held is None or not (alone and bare) or not held.predicates or not held.head:
-        return said
+    if predications is None or held is None or not (alone and bare) or not held.predicates or not held.head:
+        return predications
     if last_word(thing.head) in SURFACES - {"tray"} or thing.members:
-        return said  # 'lay the table with forks on the left'
+        return predications  # 'lay the table with forks on the left'
     holds = replace(first[0], arguments=(replace(held, predicates=()),))
-    return (Said((holds, *held.predicates)),)
+    return (Predication((holds, *held.predicates)),)
 
 
 def _is_absolute(predicate: Predicate) -> bool:
@@ -684,7 +697,7 @@ def _is_second_content(vessels: NounPhrase, other: NounPhrase) -> bool:
 
 
 def flat(verb: Verb) -> list[Predicate]:
-    """Return what a verb says of its subject as one list; alternatives after *or* are left out.
+    """Return what a verb says about its subject as one list; alternatives after *or* are left out.
 
     Parameters
     ----------
@@ -699,7 +712,7 @@ def flat(verb: Verb) -> list[Predicate]:
     """
     found: list[Predicate] = []
     contrasted: list[Predicate] = []
-    for part in verb.said:
+    for part in verb.predications:
         if part.contrast:
             contrasted += part.predicates
         elif not part.choice:
@@ -734,13 +747,13 @@ def _with_own_parts(parts: tuple[Any, ...]) -> tuple[Any, ...]:
     for joint, part in zip(parts[1::2], parts[2::2], strict=True):
         phrase = part.phrase if isinstance(part, Noun) else None
         before = kept[owner_at]
-        said = phrase.predicates if phrase is not None else ()
-        aims = bool(said) and all(p.relation in ("facing", "pointing", "state") for p in said)
+        predicates = phrase.predicates if phrase is not None else ()
+        aims = bool(predicates) and all(p.relation in ("facing", "pointing", "state") for p in predicates)
         owner = None if phrase is None or phrase.owner is None else phrase.owner.pronoun
         if phrase is not None and aims and owner == "it" and before.phrase.head:
             bare = replace(phrase, predicates=())
-            said = tuple(replace(p, subject_part=bare) for p in said)
-            kept[owner_at] = Noun(_restricted(before.phrase, said), (*before.extra, *part.extra))
+            predicates = tuple(replace(p, subject_part=bare) for p in predicates)
+            kept[owner_at] = Noun(_restricted(before.phrase, predicates), (*before.extra, *part.extra))
         else:
             kept += [joint, part]
             owner_at = len(kept) - 1 if phrase is not None else owner_at

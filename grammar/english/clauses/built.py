@@ -1,4 +1,4 @@
-"""Hold the pieces of a clause while the parser runs: nouns and verbs with what is said of them."""
+"""Hold the pieces of a clause while the parser runs: nouns, verbs and their predicates."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Noun:
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class Predication:
     """Predicates with their joint: ``choice`` is True after *or*, ``contrast`` after *but*."""
 
     predicates: tuple[Predicate, ...]
@@ -39,7 +39,7 @@ class Verb:
     """A verb group with what it says."""
 
     group: VerbGroup
-    said: tuple[Said, ...]
+    predications: tuple[Predication, ...]
     span: Span
     nominal: Noun | None = None
     thing: Noun | None = None  # object of the verb
@@ -52,7 +52,7 @@ class Built:
     shape: str
     subject: Noun | None
     verbs: tuple[Verb, ...]
-    said: tuple[Said, ...] = ()
+    predications: tuple[Predication, ...] = ()
 
 
 def union(first: Span, last: Span) -> Span:

@@ -44,7 +44,7 @@ def end_before(chunks: list[Chunk], at: int, types: frozenset[str]) -> int:
 
 
 def emptied(chunk: Chunk, value: str = "") -> Chunk:
-    """Return a chunk as words that say nothing of places.
+    """Return a chunk as words that say nothing about places.
 
     Parameters
     ----------

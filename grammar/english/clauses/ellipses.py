@@ -67,18 +67,18 @@ def with_pairs_apart(chunks: list[Chunk]) -> list[Chunk]:
         if len(things) < 2 or type_at(chunks, end) != "PREP" or (placed is (end > verb)):
             continue
         places, after = _listed(chunks, end + 1)
-        rest = end_before(chunks, after, JOINT_TYPES - {"COMMA"})
-        told = [k for k in range(after, rest) if _is_respective(chunks[k])]
+        stop = end_before(chunks, after, JOINT_TYPES - {"COMMA"})
+        respective = [k for k in range(after, stop) if _is_respective(chunks[k])]
         ordered = all(place.value.adjectives and place.value.adjectives[0].rank for place in places)
-        if len(places) != len(things) or not (told or ordered) or not places[-1].value.head:
+        if len(places) != len(things) or not (respective or ordered) or not places[-1].value.head:
             continue
-        of = [c for c in chunks[after : told[0] if told else rest] if c.type != "COMMA"]
+        of = [c for c in chunks[after : respective[0] if respective else stop] if c.type != "COMMA"]
         begin, found = (i - 1 if placed else i), list(chunks[: i - 1 if placed else i])
         for thing, place in zip(things, places, strict=True):
             value = place.value if place.value.head else replace(place.value, head=places[-1].value.head)
             here = replace(place, value=replace(value, determiner=value.determiner or "the"))
             found += [*chunks[begin:i], thing, *chunks[verb:end], chunks[end], here, *of, cut(place)]
-        return [*found, *with_pairs_apart(chunks[rest:])]
+        return [*found, *with_pairs_apart(chunks[stop:])]
     return chunks
 
 
@@ -112,8 +112,8 @@ def _with_own_parts_after(chunks: list[Chunk]) -> list[Chunk]:
         aside = types[:3] == ["NP", "COMMA", "NP"] and types[3] in ("PART", "PREP") and types[0] not in JOINT_TYPES
         part = types[:5] == ["NP", "COMMA", "NP", "ADV", "COMMA"] and chunks[i + 1].value.determiner is None
         if part and chunks[i + 1].value.head in PARTS and type_at(chunks, i + 4) == "PREP":
-            rest = end_before(chunks, i + 4, JOINT_TYPES)  # 'top hat, brim up, in the middle of the table'
-            return [*chunks[:i], *chunks[i + 4 : rest], chunks[i], *chunks[i + 1 : i + 3], *chunks[rest:]]
+            stop = end_before(chunks, i + 4, JOINT_TYPES)  # 'top hat, brim up, in the middle of the table'
+            return [*chunks[:i], *chunks[i + 4 : stop], chunks[i], *chunks[i + 1 : i + 3], *chunks[stop:]]
         end = i + 3 + (types[3] == "PART" and types[4] == "PREP")
         own = aside and type_at(chunks, end) == "NP" and type_at(chunks, end + 1) == "COMMA"
         if not own or type_at(chunks, i - 2) not in JOINT_TYPES | {""} or chunks[i + 1].value.head == "":
@@ -121,8 +121,8 @@ def _with_own_parts_after(chunks: list[Chunk]) -> list[Chunk]:
         owner = chunks[end].value.owner
         if owner is None or owner.pronoun not in ("it", "they") or type_at(chunks, end + 2) not in FINITE | {"PREP"}:
             continue
-        rest = end_before(chunks, end + 2, JOINT_TYPES)
-        return [*chunks[:i], *chunks[end + 2 : rest], cut(chunks[i]), *chunks[i + 1 : end + 1], *chunks[rest:]]
+        stop = end_before(chunks, end + 2, JOINT_TYPES)
+        return [*chunks[:i], *chunks[end + 2 : stop], cut(chunks[i]), *chunks[i + 1 : end + 1], *chunks[stop:]]
     return chunks
 
 
@@ -147,9 +147,9 @@ def _with_denied_predicates(chunks: list[Chunk]) -> list[Chunk]:
         first = max((k + 1 for k in range(i - 2) if chunks[k].type in JOINT_TYPES), default=0)
         types = [c.type for c in chunks[first : i - 2]]
         if types[:3] in (["NP", "VERB", "PREP"], ["NP", "BE", "PREP"]) and chunks[first + 1].value.positive:
-            told = replace(chunks[first + 1], value=replace(chunks[first + 1].value, positive=False))
-            said = [told, *chunks[first + 2 : i - 2]]
-            return [*chunks[:i], *said, cut(verb), *_with_denied_predicates(chunks[i + 1 :])]
+            denied_verb = replace(chunks[first + 1], value=replace(chunks[first + 1].value, positive=False))
+            predicate = [denied_verb, *chunks[first + 2 : i - 2]]
+            return [*chunks[:i], *predicate, cut(verb), *_with_denied_predicates(chunks[i + 1 :])]
     return chunks
 
 
@@ -180,7 +180,7 @@ def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_repeated_predicates(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *the ruler is in the case, and so is the pen* with what is said of the ruler said of the pen."""
+    """Return *the ruler is in the case, and so is the pen* with the predicate of the ruler repeated for the pen."""
     for i, chunk in enumerate(chunks):
         if chunk.type not in JOINT_TYPES | {"UNKNOWN"}:
             continue
@@ -194,8 +194,8 @@ def _with_repeated_predicates(chunks: list[Chunk]) -> list[Chunk]:
         verb = end_before(chunks[:i], start, FINITE)
         if verb >= i or not {"PREP", "ADV"} & {c.type for c in chunks[verb:i]}:
             continue
-        rest = end_before(chunks, end + 2, JOINT_TYPES)
-        return [*chunks[:i], cut(chunk), thing, *chunks[verb:i], *_with_repeated_predicates(chunks[rest:])]
+        stop = end_before(chunks, end + 2, JOINT_TYPES)
+        return [*chunks[:i], cut(chunk), thing, *chunks[verb:i], *_with_repeated_predicates(chunks[stop:])]
     return chunks
 
 
@@ -275,8 +275,8 @@ def _without_clefts_of_places(chunks: list[Chunk]) -> list[Chunk]:
         first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
         place, be, end = chunks[first : i - 1], chunks[i - 1].value, end_before(chunks, i + 1, JOINT_TYPES)
         plain = be.positive and be.modal is None and not be.past
-        told = type_at(chunks, i + 1) == "NP" and any(c.type in FINITE for c in chunks[i + 1 : end])
-        if plain and told and [c.type for c in place[:2]] == ["PREP", "NP"]:
+        has_clause = type_at(chunks, i + 1) == "NP" and any(c.type in FINITE for c in chunks[i + 1 : end])
+        if plain and has_clause and [c.type for c in place[:2]] == ["PREP", "NP"]:
             return [*chunks[:first], *chunks[i + 1 : end], *place, *chunks[end:]]
     return chunks
 
@@ -291,8 +291,8 @@ def _with_contrasts_at_subjects(chunks: list[Chunk]) -> list[Chunk]:
             type_at(chunks, i - 1) == "COMMA" and type_at(chunks, i - 2) == "NP" and is_place(chunks[i - 2].value)
         )
         first = max((k + 1 for k in range(i - 1) if chunks[k].type in JOINT_TYPES), default=0)
-        told = type_at(chunks, first) == "NP" and type_at(chunks, first + 1) in FINITE
-        if at_place and told and denied.value.head and not is_place(denied.value):
+        begins_clause = type_at(chunks, first) == "NP" and type_at(chunks, first + 1) in FINITE
+        if at_place and begins_clause and denied.value.head and not is_place(denied.value):
             comma = chunks[i - 1]
             moved = [chunks[first], comma, denied, replace(comma), *chunks[first + 1 : i - 1]]
             return [*chunks[:first], *moved, *chunks[i + 1 :]]
@@ -336,11 +336,11 @@ def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
         first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
         nothing = type_at(chunks, first) == "NP" and chunks[first].value.pronoun == "nothing"
         if bare and nothing and type_at(chunks, first + 1) in FINITE and chunks[first + 1].value.modal is None:
-            told = [c for c in chunks[first + 1 : i] if c.type != "ADVERB"]  # 'nothing is on it except the clock'
+            denial = [c for c in chunks[first + 1 : i] if c.type != "ADVERB"]  # 'nothing is on it except the clock'
             thing, rest = chunks[i + 1], chunks[i + 2 :]
             if [type_at(rest, k) for k in (0, 1)] == ["COMMA", "REL"]:
                 rest = [cut(rest[0]), replace(thing), *rest[2:]]  # '…, which must be 1 m from the wall'
-            return [*chunks[:i], cut(chunk), thing, *told, *_with_exceptions(rest)]
+            return [*chunks[:i], cut(chunk), thing, *denial, *_with_exceptions(rest)]
         if excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in ("BE", "PART", "TPART", "ADJP"):
             end = end_before(chunks, i + 2, JOINT_TYPES)  # 'all bottles except the one being poured'
             return [*chunks[:i], *_with_exceptions(chunks[end:])]

@@ -118,7 +118,7 @@ def _cuts(
 ) -> bool:
     """Return True if a clause begins after the joints from ``at`` to ``end``.
 
-    ``labelled`` is True for places after the thing that they are said of, and a colon: *slippers: on the mat, …*.
+    ``labelled`` is True for places after the thing that they are said about, and a colon: *slippers: on the mat, …*.
     """
     if end >= len(types) or kinds & {"CUT", "SUB", "COLON"}:
         return True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import VerbGroup
-from deixis.grammar.english.clauses.built import Noun, Said, misunderstood, union
+from deixis.grammar.english.clauses.built import Noun, Predication, misunderstood, union
 from deixis.grammar.english.tree import (
     Adjective,
     Degree,
@@ -41,7 +41,7 @@ _KEEPING = frozenset({"keep", "leave", "stay", "remain"})
 _REACHING = frozenset({"get", "come", "listen", "ask", "look"})
 """Verbs after which *at*, *to* and *for* name no place of the subject."""
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
-"""Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
+"""Relations that, without an object, are to the thing that *with* describes: *a dish with the swabs inside*."""
 _COVERING = frozenset(
     {
         "spread",
@@ -236,14 +236,14 @@ def _is_shape(lemma: str, predicate: Predicate) -> bool:
     )
 
 
-def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, ...]:
+def moved(group: VerbGroup, predications: tuple[Predication, ...], span: Span) -> tuple[Predication, ...]:
     """Give the phrases after a verb the meaning of the verb: *leans against X*, *points to the right*, *faces away*.
 
     Parameters
     ----------
     group
         Verb before the places.
-    said
+    predications
         What stands after the verb.
     span
         Place of the verb in the text.
@@ -253,17 +253,17 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
     tuple of Said
         Places after the verb, as it makes them.
     """
-    if not said:
+    if not predications:
         if group.lemma == "touch" and not {"almost", "nearly"} & set(group.adverbs):
-            return (Said((Predicate("touching_each_other", (), span),)),)  # 'the cups must not touch'
+            return (Predication((Predicate("touching_each_other", (), span),)),)  # 'the cups must not touch'
         if group.kind in ("posture", "lean", "be") or group.lemma in ENTER_VERBS:
             return ()
         misunderstood(span, f"'{group.lemma}' does not say where something is")
         return ()
     if group.kind not in ("posture", "lean", "be", "face", "point") and group.lemma not in ENTER_VERBS:
         misunderstood(span, f"'{group.lemma}' does not say where something is")
-        return () if group.lemma in _REACHING else said
-    first, *others = said
+        return () if group.lemma in _REACHING else predications
+    first, *others = predications
     over = first.predicates[0] if first.predicates else None
     draped = over is not None and over.relation == "above" and bool(over.arguments) and _is_draped(over.arguments[0])
     if group.lemma == "hang" and not group.positive and draped:
@@ -275,43 +275,46 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
     return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
 
 
-def _denies(said: Said) -> bool:
+def _denies(predications: Predication) -> bool:
     """Return True for a place that begins with *not*: *it points at the door, not at the wall*."""
-    return bool(said.predicates) and not said.predicates[0].positive
+    return bool(predications.predicates) and not predications.predicates[0].positive
 
 
-def with_support(group: VerbGroup, said: tuple[Said, ...]) -> tuple[Said, ...]:
+def with_support(group: VerbGroup, predications: tuple[Predication, ...]) -> tuple[Predication, ...]:
     """Return the places after a verb of hanging with *on* and *from* as what its subject hangs on.
 
     Parameters
     ----------
     group
         Verb before the places.
-    said
+    predications
         What stands after the verb; a place after another one is a restriction of its noun.
 
     Returns
     -------
     tuple of Said
-        Places in which *it hangs over the fire on a chain* says of the subject, not of the fire, that it is on a chain.
+        Places in which *it hangs over the fire on a chain* says that the subject, not the fire, is on a chain.
     """
-    if group.lemma in _HANGING and said and len(said[-1].predicates) > 1:
-        places = said[-1].predicates  # 'it hangs above it from a nail'
+    if group.lemma in _HANGING and predications and len(predications[-1].predicates) > 1:
+        places = predications[-1].predicates  # 'it hangs above it from a nail'
         made = (p if p.relation != "from" or not p.arguments else replace(p, relation="on") for p in places[1:])
-        said = (*said[:-1], replace(said[-1], predicates=(places[0], *made)))
-    last = said[-1].predicates[-1] if said and said[-1].predicates else None
+        predications = (*predications[:-1], replace(predications[-1], predicates=(places[0], *made)))
+    last = predications[-1].predicates[-1] if predications and predications[-1].predicates else None
     inner = last.arguments[-1].predicates[-1:] if last is not None and last.arguments else ()
     support = bool(inner) and inner[0].relation in ("on", "from") and bool(inner[0].arguments) and not inner[0].reversed
     if last is None or group.lemma not in _HANGING or not support:
-        return said
+        return predications
     definite = last.arguments[-1].determiner == "the" or last.arguments[-1].owner is not None
     if last.relation in ("on", "from") and not (definite and inner[0].arguments[0].determiner in ("a", "an")):
-        return said  # 'it hangs from a hook on the door', but 'from the lamp on a thread'
+        return predications  # 'it hangs from a hook on the door', but 'from the lamp on a thread'
     noun = last.arguments[-1]
     bare = replace(noun, predicates=noun.predicates[:-1], span=(noun.span[0], max(noun.span[0], inner[0].span[0])))
     here = replace(last, arguments=(*last.arguments[:-1], bare))
     support_of_subject = replace(inner[0], relation="on")
-    return (*said[:-1], replace(said[-1], predicates=(*said[-1].predicates[:-1], here, support_of_subject)))
+    return (
+        *predications[:-1],
+        replace(predications[-1], predicates=(*predications[-1].predicates[:-1], here, support_of_subject)),
+    )
 
 
 def destination(predicate: Predicate) -> Predicate:
@@ -378,7 +381,7 @@ def transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, .
     Returns
     -------
     tuple of Predicate
-        What the verb with its object says of the subject; empty if it says no place.
+        What the verb with its object says about the subject; empty if it says no place.
     """
     span = union(span, things.phrase.span)
     phrase = things.phrase
@@ -515,7 +518,7 @@ def checked(found: list[Predicate], phrase: NounPhrase | None = None) -> list[Pr
     Returns
     -------
     list of Predicate
-        Predicates without participles that say nothing of a place, which are noted as misunderstood.
+        Predicates without participles that say nothing about a place, which are noted as misunderstood.
     """
     kept = []
     for predicate in found:

@@ -90,19 +90,19 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
     >>> settled(sentence, [(sentence, True)]).contested
     frozenset()
     """
-    rivals = [(_Said.by(other), other, in_conjunction) for other, in_conjunction in others]
+    rivals = [(_Propositions.by(other), other, in_conjunction) for other, in_conjunction in others]
     if not rivals:
         return first
-    kept, said = first, _Said.by(first)
+    kept, ours = first, _Propositions.by(first)
     guessed = any(clause.guesses for clause in first.clauses) or bool(first.guesses)
     for theirs, other, _ in rivals:
-        simpler = (theirs.odd, theirs.number) < (said.odd, said.number) and theirs.number <= said.number
-        if not guessed and simpler and theirs.can_replace(said):
-            kept, said = other, theirs
+        simpler = (theirs.odd, theirs.number) < (ours.odd, ours.number) and theirs.number <= ours.number
+        if not guessed and simpler and theirs.can_replace(ours):
+            kept, ours = other, theirs
     contested: set[Span] = set()
     for theirs, _, in_conjunction in rivals:
-        if (in_conjunction or theirs.number < said.number) and theirs.can_replace(said):
-            contested |= {span for span, proposition in said.spans if not theirs.has(proposition)}
+        if (in_conjunction or theirs.number < ours.number) and theirs.can_replace(ours):
+            contested |= {span for span, proposition in ours.spans if not theirs.has(proposition)}
     return replace(kept, contested=frozenset(contested))
 
 
@@ -118,7 +118,7 @@ class _Proposition:
 
 
 @dataclass(frozen=True, slots=True)
-class _Said:
+class _Propositions:
     """Propositions of a reading, with the places of its pronouns."""
 
     spans: list[tuple[Span, _Proposition]]
@@ -132,7 +132,7 @@ class _Said:
         return sum(proposition.relation != "kind" for proposition in self.all)
 
     @staticmethod
-    def by(sentence: Sentence) -> _Said:
+    def by(sentence: Sentence) -> _Propositions:
         """Return what a sentence says."""
         pronouns: set[int] = set()
         odd = 0
@@ -150,14 +150,14 @@ class _Said:
                 for second in _places(ends):
                     sign = positive and predicate.positive
                     spans.append((predicate.span, _Proposition(predicate.relation, first, second, value, sign)))
-        return _Said(spans, {proposition for _, proposition in spans}, pronouns, odd)
+        return _Propositions(spans, {proposition for _, proposition in spans}, pronouns, odd)
 
-    def can_replace(self, said: _Said) -> bool:
+    def can_replace(self, other: _Propositions) -> bool:
         """Return True if the same things take part, no two more are equated, and no gap has only one side."""
-        equated = any(p.relation == "kind" and p not in said.all for p in self.all)
-        idle = {place for p in said.all for place in (p.first, p.second)}
+        equated = any(p.relation == "kind" and p not in other.all for p in self.all)
+        idle = {place for p in other.all for place in (p.first, p.second)}
         idle -= {place for p in self.all for place in (p.first, p.second)}
-        return not equated and self.odd <= said.odd and not idle - {None}
+        return not equated and self.odd <= other.odd and not idle - {None}
 
     def has(self, proposition: _Proposition) -> bool:
         """Return True for a proposition of this reading, one of whose things may be a pronoun or left out."""
@@ -170,7 +170,7 @@ class _Said:
 
 
 def _predicates(sentence: Sentence) -> Iterator[tuple[NounPhrase | None, Predicate, bool]]:
-    """Yield the predicates of a sentence with what they are said of, and False for those of a denied clause."""
+    """Yield the predicates of a sentence with what they are said about, and False for those of a denied clause."""
     for clause in sentence.clauses:
         if clause.subject is not None:
             yield from _restrictions(clause.subject)

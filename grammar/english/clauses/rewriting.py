@@ -98,7 +98,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
 
 
 def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
-    """Return the chunks with what parentheses say of the noun before them at the end, as a phrase of its own.
+    """Return the chunks with what parentheses say about the noun before them at the end, as a phrase of its own.
 
     *Set the knife (with its blade to the left) beside the plate* is read as *set the knife beside the plate; the knife
     with its blade to the left*. A name in parentheses, or a word said in passing, is left out.
@@ -324,7 +324,7 @@ def _sought_in_vain(chunks: list[Chunk], at: int) -> _Run | None:
 
 
 def _caused(chunks: list[Chunk], at: int) -> _Run | None:
-    """Find what someone lets others do: *the owner had it moved*, which says of no thing where it is."""
+    """Find what someone lets others do: *the owner had it moved*, which states the place of no thing."""
     if chunks[at].type != "NP" or type_at(chunks, at + 1) != "TVERB":
         return None
     types = [type_at(chunks, at + k) for k in range(4)]
@@ -444,7 +444,7 @@ def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out an aside after a comma: *as if someone had just put it down*, *which made everyone laugh*."""
     for i, chunk in enumerate(chunks):
         after = type_at(chunks, i + 1)
-        told = chunk.type == "UNKNOWN" and chunk.value == "as" and after in FINITE | {"PART"}
+        manner = chunk.type == "UNKNOWN" and chunk.value == "as" and after in FINITE | {"PART"}
         compared = chunk.type == "SUB" and chunk.value == "as" and after == "SUB"
         so = chunk.type == "SUB" and chunk.value == "so" and after == "ADJP"
         so = so or (chunk.type == "SUB" and chunk.value == "once" and after == "PREP")  # 'once on the shelf'
@@ -462,10 +462,10 @@ def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
         comment = chunk.type == "REL" and after in ("VERB", "TVERB") and chunks[i + 1].value.lemma in _COMMENTING
         if type_at(chunks, i - 1) == "COMMA" and comment:  # '…, which made everyone laugh'
             return _without_asides([*chunks[: i - 1], *chunks[end_before(chunks, i + 2, _BREAKS) :]])
-        if type_at(chunks, i - 1) != "COMMA" or not (told or compared or so or searched):
+        if type_at(chunks, i - 1) != "COMMA" or not (manner or compared or so or searched):
             continue
         end = next((k for k in range(i + 2, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), None)
-        if end is not None and told and type_at(chunks, i - 2) == "NOT":
+        if end is not None and manner and type_at(chunks, i - 2) == "NOT":
             return _without_asides([*chunks[: i - 1], *chunks[end + 1 :]])
         if end is not None:
             return _without_asides([*chunks[: i - 1], *chunks[end:]])
@@ -585,7 +585,7 @@ def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_parts_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
-    """Put what is said of a part before the verb at the end: *the tweezers, points to the left, lie along the edge*."""
+    """Move the description of a part to the end: *the tweezers, points to the left, lie along the edge*."""
     for i in range(1, len(chunks) - 3):
         subject, part = chunks[i - 1], chunks[i + 1]
         if [type_at(chunks, i + k) for k in (-1, 0, 1)] != ["NP", "COMMA", "NP"] or not subject.value.head:
@@ -749,8 +749,10 @@ def _with_measures_denied(chunks: list[Chunk]) -> list[Chunk]:
             metres, hedge, bound = following.value
             following.value = (metres, hedge, "<" if bound == ">" else ">")
             continue
-        told = chunk.type == "PUT" and type_at(chunks, i - 1) == "NP" and chunks[i - 1].value.pronoun in ("you", "we")
-        if told and type_at(chunks, i + 1) == "NP" and type_at(chunks, i - 2) == "NP":
+        instructed = (
+            chunk.type == "PUT" and type_at(chunks, i - 1) == "NP" and chunks[i - 1].value.pronoun in ("you", "we")
+        )
+        if instructed and type_at(chunks, i + 1) == "NP" and type_at(chunks, i - 2) == "NP":
             chunk = Chunk("TVERB", chunk.start, chunk.end, chunk.value, chunk.span)
         found.append(chunk)
     return found
@@ -785,14 +787,14 @@ def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
-    """End the clause of a note before what is said of a part: *rear left corner, lid closed*."""
+    """End the clause of a note before what is said about a part: *rear left corner, lid closed*."""
     for i, chunk in enumerate(chunks):
         before = [c.type for c in chunks[:i] if c.type != "ADVERB"][-2:]
         beside = type_at(chunks, i + 1) == "NP" and before in (["PREP", "NP"], ["OF", "NP"])
         if chunk.type != "COMMA" or not beside:
             continue
         part = chunks[i + 1].value
-        told = type_at(chunks, i + 2) in ("PART", "ADJP") and type_at(chunks, i + 3) in _ENDS
+        described = type_at(chunks, i + 2) in ("PART", "ADJP") and type_at(chunks, i + 3) in _ENDS
         verbless = not any(c.type in FINITE | {"PUT"} for c in chunks)
         other = not part.head and (part.pronoun == "one" or part.count is not None) and type_at(chunks, i + 2) == "PART"
         hangs = [type_at(chunks, i + k) for k in (2, 3, 4)] == ["PART", "PREP", "NP"] and type_at(
@@ -802,7 +804,7 @@ def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
         own = last_word(part.head) in PARTS and type_at(chunks, i + 2) in ("ADJP", "PART", "TPART")
         bare = part.determiner is None and part.owner is None and not part.adjectives
         # 'four chairs around it, one fallen' and 'behind it, lid open towards you'
-        if (verbless and (other or hangs)) or (bare and (own or (told and verbless))):
+        if (verbless and (other or hangs)) or (bare and (own or (described and verbless))):
             chunks[i] = cut(chunk)
     return chunks
 
@@ -847,7 +849,7 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *both to the right of the plate* after a comma as said of the things before, not of the subject."""
+    """Return *both to the right of the plate* after a comma as a statement about the things before."""
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         whole = chunk.type == "ADVERB" and chunk.value in ("both", "all", "each")

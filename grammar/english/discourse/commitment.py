@@ -145,7 +145,7 @@ FRAMED = re.compile(
     r")",
     re.IGNORECASE,
 )
-"""Beginning of a sentence that tells of another world than the one on the table: *in theory*, *the moment it is …*."""
+"""Beginning of a sentence about another world than the one on the table: *in theory*, *the moment it is …*."""
 SELDOM = re.compile(
     r"(?:\bnot|n['\u2019]t)\s+(?:always|usually|normally|generally|often|necessarily|every\s+day|all\s+the\s+time)\b|"
     r"^\s*(?:very\s+)?few\s|\bexcepted\b",
@@ -223,7 +223,7 @@ def condition_of(sentence: Sentence) -> str | None:
 
 
 def inserted_condition(clause: str) -> str | None:
-    """Return the condition that stands between a subject and what is said of it: *The spoon, if there is soup, …*.
+    """Return the condition that stands between a subject and what is said about it: *The spoon, if there is soup, …*.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Turn parsed sentences into facts: what each clause states of which objects, and with what qualification."""
+"""Turn parsed sentences into facts: what each clause states about which objects, and with what qualification."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ LABEL = re.compile(
 )
 """Words after a label of what follows: *towel first: fold it*."""
 ITEM_LABEL = re.compile(r"([A-Z][\w'\u2019-]*(?:\s+[\w'\u2019-]+){0,2})\s*:\s+\w")
-"""Label of an item and what is said of it: *Soup spoon: a large and round spoon.*"""
+"""Label of an item and what is said about it: *Soup spoon: a large and round spoon.*"""
 ABOUT_IT = re.compile(r"\s*(?:it|they)\s", re.IGNORECASE)
 MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
 """Properties that a part and its whole need not share."""
@@ -343,8 +343,8 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
-        said = self.text[self.references.start : self.end]
-        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(said) or EVENT.match(said)
+        text = self.text[self.references.start : self.end]
+        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(text) or EVENT.match(text)
         if limit is not None and self.how.condition is None:
             self.how = replace(self.how, condition=limit[0].strip(" ,."))
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
@@ -411,19 +411,19 @@ class Discourse(Statements):
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
 
     def _inserted_condition(self, subject: NounPhrase | None, predicates: tuple[Predicate, ...]) -> str | None:
-        """Return the condition between a subject and what is said of it."""
+        """Return the condition between a subject and what is said about it."""
         if subject is None or not predicates or predicates[0].span[0] < subject.span[0]:
             return None
         return inserted_condition(self.text[subject.span[0] : predicates[-1].span[1]])
 
     def _is_past(self, clause: Clause) -> bool:
         """Return True for what was so, and need not be so now: *my mother always kept it here*."""
-        said = self.text[slice(*clause.span)]
-        if self.story or NOW.search(said):
+        wording = self.text[slice(*clause.span)]
+        if self.story or NOW.search(wording):
             return False
-        whole = self.text[self.references.start : self.end]
-        ended = PAST_TIME.search(whole) is not None and PRESENT.search(said) is None
-        return clause.past or ended or HABIT.search(said) is not None
+        text = self.text[self.references.start : self.end]
+        ended = PAST_TIME.search(text) is not None and PRESENT.search(wording) is None
+        return clause.past or ended or HABIT.search(wording) is not None
 
     def _contrast(self, clause: Clause, subject: NounPhrase, sentence: int) -> None:
         for negated in (False, True):

@@ -15,7 +15,8 @@ from deixis.grammar.english.vocabulary.nouns import HEADED, PEOPLE, last_word
 from deixis.ontology.graph.claims import COLLECTIVE
 
 MIN_PAST_OF_STORY = 3
-"""Number of clauses in the past tense from which a text is a story, whose past is its present."""
+"""Minimum number of clauses in the past tense at which a text is a story: its past tense describes the present
+table."""
 
 SUPPOSED = {
     "apparently": 0.7,
@@ -29,7 +30,7 @@ SUPPOSED = {
 RARE = frozenset({"hardly", "rarely", "seldom", "scarcely"})
 
 NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to", "like"})
-"""Relations of the parser that say nothing of where a thing is."""
+"""Relations of the parser that say nothing about where a thing is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,7 @@ TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct|open)\w*\s+(?:\w+
 
 
 MIN_WORDS_OF_LISTS = 3
-"""Number of words from which a name with a plural inside may be a list without commas."""
+"""Minimum number of words at which a name with a plural inside may be a list without commas."""
 
 
 class Drafting:

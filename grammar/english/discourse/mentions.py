@@ -1,4 +1,4 @@
-"""Read noun phrases: the things that they introduce or refer to, and what they say of them."""
+"""Read noun phrases: the things that they introduce or refer to, and what they say about them."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
 
 
 def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
-    """Return True if what follows a surface is said of the subject: *on the floor to the left*."""
+    """Return True if what follows a surface is said about the subject: *on the floor to the left*."""
     around = entity.role is Role.SURFACE or (entity.role is Role.SURROUNDING and last_word(entity.noun) != "shelf")
     bare = all((not p.arguments and p.relation in DIRECTIONS) or p.reversed for p in phrase.predicates)
     noun = last_word(entity.noun)
@@ -76,7 +76,7 @@ class Mentions(Drafting, ABC):
 
     @abstractmethod
     def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
-        """State what a predicate, such as the restriction of a noun phrase, says of its subject."""
+        """State what a predicate, such as the restriction of a noun phrase, says about its subject."""
 
     def _subject(self, subject: NounPhrase, predicates: tuple[Predicate, ...]) -> Entity | None:
         """Return the subject of a clause; one new object for each member of a group that an argument quantifies."""
@@ -109,7 +109,7 @@ class Mentions(Drafting, ABC):
     def _introduce(
         self, phrase: NounPhrase, relation: str | None = None, besides: Entity | None = None
     ) -> Entity | None:
-        """Return what a phrase stands for, and state what its adjectives, its number and its clauses say of it."""
+        """Return what a phrase stands for, and state what its adjectives, its number and its clauses say about it."""
         if phrase.members:
             found: list[Entity] = []
             for member in phrase.members:
@@ -187,7 +187,7 @@ class Mentions(Drafting, ABC):
         )  # fmt: skip
 
     def _end_of_own(self, phrase: NounPhrase) -> int:
-        """Return the end of the words that say something of a phrase itself, and not of a thing in its restrictions."""
+        """Return the end of the words about a phrase itself, before the words about things in its restrictions."""
         last = phrase.predicates[-1]
         inner = [argument for argument in last.arguments if argument.predicates]
         return min((a.predicates[0].span[0] for a in inner), default=phrase.span[1])

@@ -31,7 +31,7 @@ from deixis.grammar.english.vocabulary.relation_words import prepositions
 from deixis.ontology.inflection import plural, singulars
 
 MAX_COUNTED = 1000
-"""Largest number of a noun phrase that is read as so many things."""
+"""Largest number in a noun phrase (*twelve cups*) for which the group is expanded into single things."""
 NAMED = re.compile(
     r"\b(?:the|a|an|your|my|[A-Z]\w+['\u2019]s)\s+((?:(?!(?:the|a|an|your|my|is|are|was|were)\b)[a-z]+\s+)*?(?!(?:is|are|was|were)\b)[a-z]+)(?=\s+(?:and|then|so|,)|[,;:])",
     re.IGNORECASE,
@@ -40,7 +40,7 @@ NAMED = re.compile(
 MAX_SENTENCES_TO_GROUP = 4
 """Number of sentences over which *the smallest* goes back to a group."""
 MIN_LOST = 12
-"""Number of characters from which a phrase that was not understood can name a thing."""
+"""Minimum number of characters at which a phrase that was not understood can name a thing."""
 REGIONS = frozenset(
     [
         "corner",
@@ -176,7 +176,7 @@ class References:
         return Region(term, " ".join(words) or None, None if of is None or of.role is Role.SURFACE else of)
 
     def find(self, phrase: NounPhrase, relation: str | None = None, besides: Entity | None = None) -> Entity | None:
-        """Return the object or group that a phrase stands for, a new one if need be; None for nothing.
+        """Return the object or group that a phrase stands for, a new one if necessary; None for nothing.
 
         Parameters
         ----------
@@ -310,24 +310,24 @@ class References:
         str
             Words as written, from the start of the phrase to its head or complement, with single spaces.
         """
-        said = " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
+        wording = " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
         stem = last_word(phrase.head)
         if not stem:
-            one = re.match(r".*?\bones?\b", said, re.IGNORECASE) if phrase.pronoun == "one" else None
-            return (said if one is None else one[0]).strip(" ,;:.")
-        first = max(said.casefold().find(phrase.head.split()[0][:2]), 0)
+            one = re.match(r".*?\bones?\b", wording, re.IGNORECASE) if phrase.pronoun == "one" else None
+            return (wording if one is None else one[0]).strip(" ,;:.")
+        first = max(wording.casefold().find(phrase.head.split()[0][:2]), 0)
         start = re.escape(stem[: max(2, len(stem) - 2)].casefold())
-        whole = re.search(rf"\b{start}", said.casefold()[first:]) or re.search(start, said.casefold()[first:])
-        place = first + whole.start() if whole is not None else -1
+        match = re.search(rf"\b{start}", wording.casefold()[first:]) or re.search(start, wording.casefold()[first:])
+        place = first + match.start() if match is not None else -1
         if place < 0:
-            return said.strip(" ,;:.")
-        end = next((i for i in range(place, len(said)) if said[i] in " ,;:."), len(said))
+            return wording.strip(" ,;:.")
+        end = next((i for i in range(place, len(wording)) if wording[i] in " ,;:."), len(wording))
         if phrase.of is not None and phrase.of.span[1] <= phrase.span[1] and phrase.of.span[0] >= phrase.span[0]:
             part = re.escape(last_word(phrase.of.head)[: max(2, len(last_word(phrase.of.head)) - 2)].casefold())
-            named = re.search(rf"\b{part}[\w'-]*", said[end:].casefold()) if phrase.of.head else None
-            whole_of = min(len(said), phrase.of.span[1] - phrase.span[0])
+            named = re.search(rf"\b{part}[\w'-]*", wording[end:].casefold()) if phrase.of.head else None
+            whole_of = min(len(wording), phrase.of.span[1] - phrase.span[0])
             end = max(end, whole_of if named is None else end + named.end())
-        return said[:end].strip(" ,;:.").removesuffix("'s")
+        return wording[:end].strip(" ,;:.").removesuffix("'s")
 
     def earlier(self, phrase: NounPhrase) -> Entity | None:
         """Return the earlier object that a definite phrase stands for, or None.
@@ -681,8 +681,8 @@ class References:
         alone = phrase.pronoun is None and phrase.determiner == "the" and not phrase.plural and phrase.of is None
         if group is None and ordered and alone and relation in ("inside", "on") and besides is not None:
             beside = next((f.others[-1] for f in self.recent[:1] if f.relation == relation and f.others), None)
-            told = beside is not None and bool(beside.noun) and not beside.members and beside.group is None
-            if beside is not None and told and any(d in ("position", "height", "rank") for d, _ in beside.adjectives):
+            single = beside is not None and bool(beside.noun) and not beside.members and beside.group is None
+            if beside is not None and single and any(d in ("position", "height", "rank") for d, _ in beside.adjectives):
                 return self._new(replace(phrase, head=beside.noun), beside.role)  # 'in the top drawer, … in the second'
         if group is None and not phrase.adjectives and relation in ("inside", "on", "under"):
             another = self._another_one(phrase, besides, relation)
@@ -938,19 +938,24 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
 
     The same holds of *the black piece* after *the side pieces*, and of *the front rail* after *the side rails*.
     """
-    told = {
+    distinguishing = {
         (a.dimension, a.word) for a in phrase.adjectives
         if a.dimension in ("position", "colour") and a.degree is Degree.PLAIN
     }  # fmt: skip
     longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
-    if not longer or not told or told & entity.adjectives or entity.noun.startswith(tuple(w for _, w in told)):
+    if (
+        not longer
+        or not distinguishing
+        or distinguishing & entity.adjectives
+        or entity.noun.startswith(tuple(w for _, w in distinguishing))
+    ):
         return False
     sides = _SIDES.intersection(entity.noun.split()[:-1])
-    lateral = all(word in ("left", "right") for _, word in told) and sides == {"side"}
-    if any(d == "position" for d, _ in told) and sides and not lateral:
+    lateral = all(word in ("left", "right") for _, word in distinguishing) and sides == {"side"}
+    if any(d == "position" for d, _ in distinguishing) and sides and not lateral:
         return True  # but 'the left panel' is one of the side panels
     several = entity.members or entity.plural or entity.group is not None
-    return not several or (any(d == "colour" for d, _ in told) and not phrase.plural)
+    return not several or (any(d == "colour" for d, _ in distinguishing) and not phrase.plural)
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:

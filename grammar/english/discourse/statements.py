@@ -1,4 +1,4 @@
-"""State what each predicate says of its subject: a place, a property, contents, an order."""
+"""State what each predicate says about its subject: a place, a property, contents, an order."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Statements(Relations):
                 return
             lies = relation in DIRECTIONS or relation in ("on", "under", "inside")
             if relation in PLACES or (not predicate.arguments and lies):
-                return  # said of the part alone: 'the rounded edge is at the top'
+                return  # said about the part alone: 'the rounded edge is at the top'
             if any(a.pronoun in ("it", "they") and not a.head for a in predicate.arguments):
                 return  # 'the drill, its cord wrapped around it'
             apart = predicate.arguments and relation not in ("inside", "on", "touching", "pointing", "facing")
@@ -92,7 +92,7 @@ class Statements(Relations):
                 named = self.references.earlier(NounPhrase(predicate.subject_part.span, owner, "the"))
                 subject = named or subject
         if predicate.subject_part is not None and relation not in ("pointing", "facing", "open", "closed", "parallel"):
-            return  # said of a part: 'whose stick is in the pot'
+            return  # said about a part: 'whose stick is in the pot'
         if handler is not None:
             handler(subject, predicate, others)
         elif self._is_seen_from_the_viewer(predicate):

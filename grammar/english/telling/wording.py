@@ -22,7 +22,7 @@ INVERSE_WORDS = {
     "containing": "inside", "crossed_by": "across", "faced_by": "facing", "leaned_on_by": "leaning",
     "less_long": "longer", "pointed_at_by": "pointing", "ringed_by": "around", "stacked_under": "stacked",
 }  # fmt: skip
-"""Relations that are said of the object, by the inverse: *the ball is inside the box* for *containing(box, ball)*."""
+"""Relations that are stated by the inverse: *the ball is inside the box* for *containing(box, ball)*."""
 
 HEDGES = (("usually", 0.8), ("probably", 0.7), ("perhaps", 0.5), ("rarely", 0.2))
 """Words for the weight of a fact."""
@@ -130,7 +130,7 @@ def oriented(fact: Fact) -> tuple[str, str, tuple[str, ...]]:
 
 
 def said_of_fact(fact: Fact, name: Namer = name_plainly) -> tuple[str, str]:
-    """Return the subject of a fact and what is said of it; the alternatives of a denied choice are all denied.
+    """Return the subject of a fact and what is said about it; the alternatives of a denied choice are all denied.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def said_of_fact(fact: Fact, name: Namer = name_plainly) -> tuple[str, str]:
 
 
 def said_of_claim(claim: Claim, surface: str = "table", name: Namer = name_plainly) -> str | None:
-    """Return what a claim says of its subjects after *is*; None for a claim that needs a clause of its own.
+    """Return what a claim says about its subjects after *is*; None for a claim that needs a clause of its own.
 
     Parameters
     ----------

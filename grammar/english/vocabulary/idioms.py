@@ -1,4 +1,4 @@
-"""Fixed phrases that say nothing of places."""
+"""Fixed phrases that say nothing about places."""
 
 from __future__ import annotations
 
@@ -289,4 +289,4 @@ IDIOMS = tuple(
         "the right way round",
     )
 )
-"""Fixed phrases that say nothing of places."""
+"""Fixed phrases that say nothing about places."""

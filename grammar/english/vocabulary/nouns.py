@@ -223,7 +223,7 @@ SURROUNDINGS = frozenset(
         "socket",
     ]
 )
-"""Nouns of places around a table: they give directions, and are objects only where something else is said of them."""
+"""Nouns of places around a table: they give directions, and are objects only if they have another description."""
 
 VIEWER = "viewer"
 """Name of the person who looks at the scene: *me*, *you*, *the viewer*."""

@@ -157,7 +157,7 @@ def check_text(text: str, what: str) -> str:
         If it is not a string, empty, longer than ``MAX_TEXT``, or not printable.
     """
     if not isinstance(text, str):
-        raise EpisodeError(f"{what} must be a text, got {type(text).__name__}")
+        raise EpisodeError(f"{what} must be a string, got {type(text).__name__}")
     if not text.strip() or not text.isprintable():
         raise EpisodeError(f"{what} must be one line of printable text that is not blank, got {ascii(text)[:60]}")
     if len(text) > MAX_TEXT:

@@ -54,8 +54,8 @@ _PROBE = 1 << 18  # bytes that must fit on the disk before the database is opene
 class DiskKeys(Keys):
     """An ordered store on disk. Its user must let only one thread in at a time.
 
-    After a failed write, reading goes on. The next write opens the database again, as its log may end in half a write.
-    A folder that cannot be written is opened as a copy, which :meth:`protect` makes read-only.
+    After a failed write, reading still works. The next write opens the database again, as its log may end in half a
+    write. A folder that cannot be written is opened as a copy, which :meth:`protect` makes read-only.
     """
 
     def __init__(self, folder: Path, lock: OwnerLock | ReaderLock, db: Any, tally: int, sync: bool) -> None:

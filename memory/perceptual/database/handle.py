@@ -646,7 +646,7 @@ def acquire(folder: Path, create: bool) -> Handle:
     MemoryFormatError
         If there is no memory, or its files are invalid.
     MemoryWriteError
-        If the folder cannot be made or written.
+        If the folder cannot be created or written.
     """
     real = Path(os.path.realpath(folder))
     with _opening:
@@ -682,7 +682,7 @@ def _opened(folder: Path, real: Path, create: bool) -> Handle:
     try:
         real.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
+        raise MemoryWriteError(f"the folder {folder} cannot be created: {error.strerror}") from error
     try:
         with contextlib.ExitStack() as undo, wrap_level_errors(real):
             try:

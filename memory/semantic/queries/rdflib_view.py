@@ -65,7 +65,7 @@ def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
             self, query: Any, initNs: Mapping[str, Any], initBindings: Mapping[str, Any], queryGraph: Any, **kwargs: Any
         ) -> Result:
             if not isinstance(query, str):  # rdflib would evaluate it in this process, where it cannot be stopped
-                raise QueryError("query: the query of a memory must be a text, got a prepared query")
+                raise QueryError("query: the query of a memory must be a string, got a prepared query")
             if kwargs:
                 raise QueryError(f"query: unknown parameter '{next(iter(kwargs))}'")
             prefixes = {prefix: str(base) for prefix, base in {**self._namespace_for_prefix, **initNs}.items()}

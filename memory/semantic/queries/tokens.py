@@ -159,7 +159,7 @@ def given_offset(offset: int, places: list[tuple[int, int]]) -> int:
 
 
 def ambiguous(token: Token, prefixes: Collection[str]) -> bool:
-    """Say whether an IRI may be a comparison that hides the beginning of a comment, a string or a SERVICE.
+    """Return whether an IRI may be a comparison that hides the beginning of a comment, a string or a SERVICE.
 
     Parameters
     ----------

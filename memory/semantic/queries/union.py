@@ -81,7 +81,7 @@ def building(store: ox.Store, added: Triples, removed: Triples) -> Iterator[str]
 
 
 def overlapping(store: ox.Store, added: Triples, removed: Triples) -> bool:
-    """Say whether a change adds a triple to a graph that another graph has after it.
+    """Return whether a change adds a triple to a graph that another graph has after it.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Named graphs of a memory, and the copies that record which lesson contributed what.
 
 The six canonical graphs are the content. For each lesson and graph there is also a copy of what the lesson contributed,
-and likewise for the packaged ontology and shapes: a triple is removed when no copy has it any more. Triples loaded in
+and likewise for the packaged ontology and shapes: a triple is removed when no copy has it. Triples loaded in
 bulk belong to no lesson and are in the canonical graph only; if a lesson contributes such a triple too, a copy under
 ``loaded`` keeps it when the lesson is removed. Learned models, which all lessons teach together, have copies of their
 own under ``models``, and are replaced as a whole. The counts that they are learned from are under ``statistics``: once
@@ -209,7 +209,7 @@ COUNTED = ox.NamedNode(STATISTICS + "counted")
 """Graph of the counts of all lessons together."""
 
 KEPT_UP = ox.NamedNode(STATISTICS + "kept-up")
-"""Predicate for the rules by which the statistics and the inferred graph are up to date, said of :data:`COUNTED`."""
+"""Predicate for the rules by which the statistics and the inferred graph are up to date, said about :data:`COUNTED`."""
 
 
 def share_graph(lesson: str) -> ox.NamedNode:

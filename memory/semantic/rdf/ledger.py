@@ -45,7 +45,7 @@ class Operation:
     def texts(self) -> Iterator[str]:
         """Yield the operation in SPARQL.
 
-        Terms are written as N-Triples with escapes; an IRI that could end its ``<>`` early cannot be made.
+        Terms are written as N-Triples with escapes; an IRI that could end its ``<>`` early cannot be created.
 
         Yields
         ------

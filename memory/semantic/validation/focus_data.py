@@ -40,7 +40,7 @@ class FocusData:
         return FocusData(self._store)
 
     def says_much(self, node: Node) -> bool:
-        """Return whether a node has so many statements that it is read predicate by predicate.
+        """Return whether a node has too many statements to be read at once, so that it is read predicate by predicate.
 
         Parameters
         ----------

@@ -202,7 +202,7 @@ class Parts:
         return result
 
     def keep_largest(self, count: int) -> None:
-        """Set all but the largest parts aside, so that they are not joined any more.
+        """Set all but the largest parts aside, so that they are no longer joined.
 
         A part with thousands of neighbours would be examined with each of them again whenever one is joined to it.
 

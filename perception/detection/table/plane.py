@@ -96,7 +96,7 @@ class CameraPose:
         Returns
         -------
         bool
-            True for every plane if nothing is known of the camera's upright direction.
+            True for every plane if nothing is known about the camera's upright direction.
         """
         if self.upwards is not None:
             return bool(normal @ self.upwards > 0.7)
@@ -312,7 +312,7 @@ def _largest(
 
 
 def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.float64], rounds: int = 6) -> Plane:
-    """Return the least-squares plane of the points near a plane, refitted with ever smaller tolerances.
+    """Return the least-squares plane of the points near a plane, refitted with decreasing tolerances.
 
     Objects on the plane do not affect it.
 

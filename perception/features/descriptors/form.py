@@ -32,7 +32,7 @@ MIN_POINTS = 3
 """Minimum number of points with a normal."""
 
 NORMAL_RADIUS = 0.015
-"""Radius in metres of the neighbourhood from which a normal is estimated."""
+"""Radius in metres of the neighbourhood by which a normal is estimated."""
 
 AXIS_TOLERANCE = 0.006
 """Distance in metres between the axis and the line of a normal at which the normal has half its weight."""

@@ -1,7 +1,8 @@
 """Descriptor of upright things: spin images (Johnson and Hebert 1999) at two scales, each with the overall shape.
 
 The overall shape uses the vertical: the distribution of points over height and radius, and the height, length and width
-of the thing. A thing on a table may be turned about the vertical only, so that heights tell more than distances do.
+of the thing. A thing on a table may be turned about the vertical only, so that heights carry more information than
+distances.
 """
 
 from __future__ import annotations

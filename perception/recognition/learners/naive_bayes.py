@@ -100,7 +100,7 @@ class NaiveBayes(TaughtViews):
 
     The method is that of S. H. Kasaei, M. Oliveira, G. H. Lim, L. Seabra Lopes, A. M. Tome: Towards lifelong assistive
     robotics: a tight coupling between object perception and manipulation, Neurocomputing 291, 2018. Spin images become
-    words of a codebook that is learnt in advance without supervision. A category is the counts of its views' words,
+    words of a codebook that is learned in advance without supervision. A category is the counts of its views' words,
     with Laplace smoothing, and a prior by the number of its views; an update costs no more than counting. Changed: a
     ``prior`` of 0 makes all categories equally likely, since a teacher corrects hard ones, and so shows them, more
     often; ``smoothing`` is the initial count of each word. Omitted: grasps.

@@ -43,9 +43,9 @@ class Teaching:
 
 
 class End(Enum):
-    """Reason for the end of a course: all categories were learnt, patience ran out, or a category had no view left."""
+    """Reason for the end of a course: all categories were learned, patience ran out, or a category had no view left."""
 
-    LEARNT = "all learnt"
+    LEARNED = "all learned"
     FRUITLESS = "no progress"
     NO_VIEWS = "no views left"
 
@@ -85,7 +85,7 @@ class Course:
     answers: tuple[TaughtAnswer, ...]
     introduced: tuple[int, ...]
     doubts: tuple[float, ...]
-    learnt: int
+    learned: int
     stored: int
     end: End
 
@@ -162,7 +162,7 @@ def teach(
     answers: list[TaughtAnswer] = []
     introduced: list[int] = []
     doubts: list[float] = []
-    learnt, end = 0, End.LEARNT
+    learned, end = 0, End.LEARNED
     for category in order:
         first = [next(unseen[category]) for _ in range(settings.first)]
         if introduced:
@@ -174,9 +174,9 @@ def teach(
         if failed is not None:
             end = failed
             break
-        learnt += 1
+        learned += 1
     return Course(
-        learner.name, tuple(order), tuple(answers), tuple(introduced), tuple(doubts), learnt, learner.stored, end
+        learner.name, tuple(order), tuple(answers), tuple(introduced), tuple(doubts), learned, learner.stored, end
     )
 
 

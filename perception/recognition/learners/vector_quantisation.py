@@ -55,7 +55,7 @@ class VectorQuantisation(Learner):
 
     The method is that of S. Kirstein, H. Wersing, H.-M. Gross, E. Koerner: A life-long learning vector quantization
     approach for interactive learning of multiple categories, Neural Networks 28, 2012. A wrong answer adds a prototype.
-    The winner moves towards a view that it named rightly, and away from one that it named wrongly, at its own rate,
+    The winner moves towards a view that it named correctly, and away from one that it named wrongly, at its own rate,
     which decays with its moves and so preserves earlier learning. A category measures distances only in the features
     that separate it from others. Changed: features are selected by their score alone, from running moments (the squared
     difference of means over the variances, of the category and of all others), instead of by a wrapper that tries

@@ -59,11 +59,13 @@ class DepthSensor:
     colour_noise: float = 2.5
 
     def __post_init__(self) -> None:
-        if not (0 <= self.noise < 1000 and 0 <= self.missing <= 1 and 0 <= self.colour_noise < 256):
-            raise SimulationError(
-                f"`noise` must be from 0 to 1000, got {self.noise:g}; `missing` from 0 to 1, got {self.missing:g};"
-                f" `colour_noise` from 0 to 256, got {self.colour_noise:g}"
-            )
+        for name, value, most in (
+            ("noise", self.noise, 1000),
+            ("missing", self.missing, 1),
+            ("colour_noise", self.colour_noise, 256),
+        ):
+            if not 0 <= value <= most:
+                raise SimulationError(f"`{name}` must be from 0 to {most}, got {value:g}")
         if not 0 <= self.grazing[0] < self.grazing[1]:
             raise SimulationError(f"the `grazing` angles must be at least 0 and increase, got {self.grazing}")
 

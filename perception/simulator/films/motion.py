@@ -58,7 +58,7 @@ MAX_TILT = np.deg2rad(12.0)
 """Maximum angle in radians by which a thing is tilted while it is carried."""
 
 MIN_POINTS = 20
-"""Number of points from which a thing counts as visible."""
+"""Minimum number of points at which a thing counts as visible."""
 
 Pose = NDArray[np.float64]
 

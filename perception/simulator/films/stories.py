@@ -27,7 +27,7 @@ ROOM = 0.22
 """Distance in metres by which the table extends beyond the things that are on it at the start."""
 
 GAP = 0.02
-"""Least distance in metres between the boxes of a thing that is set down and of the others."""
+"""Minimum distance in metres between the boxes of a thing that is set down and of the others."""
 
 ACTIONS = {"move": 0.35, "touch": 0.1, "stack": 0.1, "take": 0.12, "bring": 0.13, "pass": 0.2}
 """Shares of the actions: to a free place, beside another thing without a gap, onto another thing, and others."""

@@ -273,7 +273,7 @@ def _lidded(outer: NDArray[np.float64], z: NDArray[np.float64], height: float) -
 
 
 STEMMED_SLENDERNESS = 1.7
-"""Ratio of height to width from which a water glass has a stem."""
+"""Minimum ratio of height to width at which a water glass has a stem."""
 
 
 def tumbler(size: Size, rng: np.random.Generator) -> Mesh:

@@ -25,31 +25,31 @@ KEYFRAME_SHIFT, KEYFRAME_TURN = 0.12, np.deg2rad(10.0)
 MAX_KEYFRAMES = 40
 
 MIN_CLOSE, MIN_ALIKE = 0.5, 0.4
-"""Least shares of the points in view whose distance and brightness agree, for a pose to be taken."""
+"""Minimum shares of the points in view whose distance and brightness agree, for a pose to be taken."""
 
 SURE = 0.6
-"""Agreement from which no other start is tried."""
+"""Minimum agreement at which no other start is tried."""
 
 LOST_AFTER, ASIDE = 0.25, 0.03
 """Time in seconds without a pose after which poses beside the last one are tried, and their distance in metres."""
 
 MIN_POINTS = 150
-"""Least number of points in view that are compared."""
+"""Minimum number of points in view that are compared."""
 
 STANDING = 0.35
 """Distance in pixels by which no part of the image may have moved, for the camera to stand still."""
 
 MIN_CONTRAST = 4.0
-"""Least gradient of the brightness at a point whose brightness is compared, in units (0 to 255) for each pixel."""
+"""Minimum gradient of the brightness at a point whose brightness is compared, in units (0 to 255) for each pixel."""
 
 CELL, PER_CELL = 8, 6
 """Side in pixels of the cells from each of which the points of the largest gradients are taken, and their number."""
 
 TABLE_STEP, THING_STEP = 6, 2
-"""Every how many rows and columns a point of the table, and one of a thing, is compared by its distance."""
+"""Strides, in rows and columns, of the points of the table and of those of a thing whose distances are compared."""
 
 EDGE = 0.012
-"""Difference of depths in metres from which a pixel shows what lies behind an edge."""
+"""Difference of depths in metres at which a pixel shows what lies behind an edge."""
 
 PLANE = 0.008
 """Distance in metres from the plane within which points of the table correct it."""

@@ -24,10 +24,10 @@ BRIGHTNESS_NOISE = 4.0
 """Standard deviation of the brightness (0 to 255) of one place from frame to frame."""
 
 TUKEY = 4.0
-"""Residual in standard deviations from which a point has no weight."""
+"""Minimum residual in standard deviations at which a point has no weight."""
 
 OCCLUSION = 0.03
-"""Difference of depths in metres from which a point counts as hidden, or as gone."""
+"""Minimum difference of depths in metres at which a point counts as hidden, or as gone."""
 
 PRIOR_SHIFT, PRIOR_TURN = 0.02, np.deg2rad(2.0)
 """Standard deviations of the error of the predicted pose, in metres and radians."""

@@ -33,7 +33,7 @@ CLOUD_SUFFIXES = frozenset({".pcd", ".ply", ".npz", ".png", ".npy"})
 """Suffixes of files that a folder of clouds may contain; PNG and NPY are depth images, which need intrinsics."""
 
 SETTLE_SECONDS = 0.2
-"""Age in seconds from which a file in a growing folder counts as completely written."""
+"""Minimum age in seconds at which a file in a growing folder counts as completely written."""
 
 
 @runtime_checkable
@@ -87,9 +87,9 @@ class FileSource:
 class FolderSource:
     """Clouds in a folder, in the order of their names, as a recording or while it grows.
 
-    With a file ``times.csv`` (columns ``file`` and ``seconds``) the folder is a recorded sequence, as
-    :func:`recording` writes it. Without one, times follow from ``rate``; while the folder grows, they are those at
-    which the files were written.
+    With a file ``times.csv`` (columns ``file`` and ``seconds``) the folder is a recorded sequence, as :func:`recording`
+    writes it. Without one, times follow from ``rate``; while the folder grows, they are the times at which the files
+    were written.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ class FolderSource:
                 time.sleep(0.05)
 
     def _settled(self, seen: Collection[Path]) -> list[tuple[Path, float]]:
-        """Return the files that have not been seen and are not being written any more, with the times of writing."""
+        """Return the files that have not been seen and are no longer being written, with the times of writing."""
         now, known = time.time(), set(seen)
         dates = [(file, _written_at(file)) for file in self._files() if file not in known]
         return [(file, at) for file, at in dates if at is not None and abs(now - at) > SETTLE_SECONDS]

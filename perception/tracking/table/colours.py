@@ -9,7 +9,7 @@ BINS = 16
 """Number of bins of each of red, green and blue."""
 
 MIN_SHARE = 0.01
-"""Least share of the pixels of a table in a bin that is a colour of the table."""
+"""Minimum share of the pixels of a table in a bin that is a colour of the table."""
 
 SHADES = (1.0, 0.85, 0.7, 0.55)
 """Factors on the colours of a table in the shadows of other things."""

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 HULL_SLACK = 0.03
-"""Distance in metres beyond the outline of the table from which a point is not above it."""
+"""Minimum distance in metres beyond the outline of the table at which a point is not above it."""
 
 MIN_OUTSIDE_PIXELS = 12
-"""Number of pixels at the border of the image or beyond the table from which a surface comes from outside."""
+"""Minimum number of pixels at the border of the image or beyond the table at which a surface comes from outside."""
 
 MAX_OUTLINE_POINTS = 5000
 """Number of points of one frame by which the outline is extended."""

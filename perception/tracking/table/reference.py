@@ -1,4 +1,4 @@
-"""The table as it was last seen at rest: depth, colour and owner of every pixel, and since when it is so."""
+"""The table as it was last seen at rest: depth, colour and owner of every pixel, and since when it is at rest."""
 
 from __future__ import annotations
 
@@ -78,8 +78,8 @@ class Reference:
     def carry(self, before: TableView, now: TableView, gap: float) -> None:
         """Carry all points to the view of a camera that has moved.
 
-        A point keeps its place in the table's frame: it lies beside the middle of its new pixel. Points that are not in
-        the view any more, or behind others, are forgotten.
+        A point keeps its place in the table's frame: it lies beside the middle of its new pixel. Points that are no
+        longer in view, or are behind others, are forgotten.
 
         Parameters
         ----------
@@ -190,7 +190,7 @@ class Reference:
         return places
 
     def give(self, pixels: NDArray[np.intp], owner: int, image: FrameImage) -> Beneath:
-        """Give pixels to an owner, with the measurements of a frame, and return what was there before.
+        """Assign pixels to an owner, with the measurements of a frame, and return what was there before.
 
         Parameters
         ----------

@@ -22,53 +22,54 @@ MARGIN = 40
 """Distance in pixels from a thing within which its missing parts are looked for."""
 
 MIN_TABLE_PIXELS = 50
-"""Least number of pixels of the table around a thing, for its missing parts to be looked for."""
+"""Minimum number of pixels of the table around a thing, for its missing parts to be looked for."""
 
 REMAINING_NOISE = 0.45
 """Standard deviation of the reference after ten frames, as a share of that of one frame."""
 
 MIN_HEIGHT, MIN_MEAN_HEIGHT = 0.0015, 0.0005
-"""Least heights in metres above the table: of a pixel of a missing part without its colour, and of the whole part."""
+"""Minimum heights in metres above the table: of a pixel of a missing part without its colour, and of the whole part."""
 
 MIN_PART, MIN_APART = 12, 4
-"""Least numbers of pixels of a part: all, and those that do not touch what is known of the thing."""
+"""Minimum numbers of pixels of a part: all, and those that do not touch what is known about the thing."""
 
 MAX_CARRIED_VIEWS = 3
-"""Number of views from which the missing parts of a thing that lies on another one are looked for."""
+"""Minimum number of views at which the missing parts of a thing that lies on another one are looked for."""
 
 MIN_FAR_PART = 3
-"""Least number of pixels of a part on the other side of something that stands before the thing."""
+"""Minimum number of pixels of a part on the other side of something that stands before the thing."""
 
 MIN_LIKENESS = 0.05
-"""Least likeness of the colour of a pixel to those of the thing, for it to be a part."""
+"""Minimum likeness of the colour of a pixel to those of the thing, for it to be a part."""
 
 MIN_SLENDERNESS = 2.0
-"""Least ratio of the length to the width of a thing that is continued behind others."""
+"""Minimum ratio of the length to the width of a thing that is continued behind others."""
 
 MIN_JOINT_SLENDERNESS = 3.0
-"""Least ratio of the length to the width of two short ends together, between which something hides the middle."""
+"""Minimum ratio of the length to the width of two short ends together, between which something hides the middle."""
 
 BESIDE, SLICE = 0.02, 0.006
 """Width in metres of the strips beside the line of a thing on a plate that show the plate, and the length of the slices
 in which they are compared with what is in the line."""
 
 UNLIKE_BESIDE, MIN_BESIDE = 30.0, 4
-"""Least distance in RGB of a pixel in the line from the plate beside it, and the least number of pixels beside it."""
+"""Minimum distance in RGB of a pixel in the line from the plate beside it, and the minimum number of pixels beside
+it."""
 
 STRIP_MARGIN = 0.006
 """Distance in metres by which the continuation of a thing may be wider than the thing, on either side."""
 
 MIN_IN_LINE = 0.6
-"""Least share of the pixels of a piece that lie in the line of a thing and have its colour."""
+"""Minimum share of the pixels of a piece that lie in the line of a thing and have its colour."""
 
 MIN_INCLUDED = 0.9
-"""Least share of the points of a piece within the box of its thing."""
+"""Minimum share of the points of a piece within the box of its thing."""
 
 MAX_LENGTH = 0.28
 """Largest length in metres of a thing and a piece of it together."""
 
 MIN_LIFTED, SUPPORT = 0.025, 0.03
-"""Height in metres from which a thing seems to float, and the depth below it in which the top of its support is."""
+"""Minimum height in metres of a thing that seems to float, and the depth below it in which its support has its top."""
 
 MIN_BEFORE = 0.01
 """Distance in metres by which a surface must be nearer than a place that it hides."""
@@ -77,7 +78,7 @@ AXIS, AXIS_STEP = 0.008, 0.005
 """Radius of the hidden stem below a thing, and the distance of the heights at which it is looked for, in metres."""
 
 MIN_HIDDEN = 0.8
-"""Least share of the places of the stem that something hides, for the thing to stand on it."""
+"""Minimum share of the places of the stem that something hides, for the thing to stand on it."""
 
 BEYOND = 0.005
 """Distance in metres from the box of a thing beyond which a point shows a part of it that was not seen before."""
@@ -336,7 +337,7 @@ class FlatThing:
 
     @property
     def is_cut_off(self) -> bool:
-        """True if something before the thing hides where it may go on, so that another view may show its other end."""
+        """True if something may hide the continuation of the thing, so that another view may show its other end."""
         from scipy.ndimage import binary_dilation
 
         return self.is_seen and bool((binary_dilation(self._seed, AROUND, iterations=2) & self._hiding).any())
@@ -346,9 +347,8 @@ class FlatThing:
 
         Pixels that are higher than the rest of the noise, or of another colour than the table, are the thing's if they
         are connected with it and are, as a whole, higher than the table or of the thing's colour. Those of a plate that
-        a thing lies on must have the thing's colour and lie in its line. A long thing goes on
-        behind things that stand before it: pixels of its colour on their other side are its own if they lie in its
-        line.
+        a thing lies on must have the thing's colour and lie in its line. A long thing continues behind things that
+        stand before it: pixels of its colour on their other side are its own if they lie in its line.
 
         Returns
         -------

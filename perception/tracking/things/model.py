@@ -16,7 +16,7 @@ from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.things.revolution import circle_around
 
 MIN_TURN = np.deg2rad(3.0)
-"""Angle in radians between two frames of a table from which the box of a thing is enlarged to hold the turned one."""
+"""Minimum angle in radians between two frames of a table at which a box is enlarged to hold the turned box."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,8 +3,8 @@
 For each frame, particles move as the velocity of the thing predicts, and some are proposed from the data. Their number
 follows from the number of bins that they fill, so that the divergence from the true posterior stays small (KLD
 sampling: Fox, Adapting the Sample Size in Particle Filters Through KLD-Sampling, 2003). They are then weighted and
-resampled in several rounds with ever smaller movements and ever sharper weights (annealing: Deutscher, Blake and Reid
-2000).
+resampled in several rounds with decreasing movements and increasingly sharp weights (annealing: Deutscher, Blake and
+Reid 2000).
 """
 
 from __future__ import annotations

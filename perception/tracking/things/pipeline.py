@@ -43,7 +43,7 @@ ALIGN_STEP, ALIGN_END = (0.012, 0.012, np.deg2rad(6.0)), 0.001
 """First steps in metres and radians of the search for a better pose at rest, and the step at which it ends."""
 
 MIN_ALIGNED = 0.6
-"""Least share of the points of a thing that nothing hides, within the image, for its pose at rest to be corrected."""
+"""Minimum share of the points of a thing that nothing hides, within the image, for its pose at rest to be corrected."""
 
 SHADE_SPREAD, COLOUR_SPREAD = 38.0, 15.0
 """Standard deviations of the colours of one place of a thing, as distances in RGB from 0 to 255: of the length of the
@@ -62,16 +62,16 @@ COLOURS = 8
 """Number of colours of a thing with which changed pixels are compared."""
 
 LEAST_INSIDE = 0.08
-"""Least share of the points of a thing that are within the image, for it to be seen well."""
+"""Minimum share of the points of a thing that are within the image, for it to be seen well."""
 
 MIN_POINTS_BEYOND = 5
-"""Number of points outside its box from which the box of a thing is extended."""
+"""Minimum number of points outside its box at which the box of a thing is extended."""
 
 NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""
 
 MEMORY_OF_THE_HIDDEN = 30.0
-"""Time in seconds in which the certainty of a thing that is not seen drops to a half."""
+"""Time in seconds in which the certainty of a thing that is not seen drops by half."""
 
 
 @dataclass(eq=False)
@@ -115,7 +115,7 @@ class Pipeline:
     found: bool = field(default=True, init=False)
     """True if the last frame shows it."""
     out_of_view: bool = field(default=False, init=False)
-    """True if it left the image above the table, and was not found since."""
+    """True if it left the image above the table, and has not been found since."""
     agreement: float = field(default=1.0, init=False)
     """Share of its visible points that agree with the last frame."""
     visible: float = field(default=1.0, init=False)
@@ -128,7 +128,7 @@ class Pipeline:
     completed_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it was last completed."""
     cut_off: bool = field(default=False, init=False)
-    """True if something hid where it may go on when it was last completed."""
+    """True if something may have hidden its continuation when it was last completed."""
     views: int = field(default=0, init=False)
     """Number of views from which it was completed during its present rest."""
     revealed: bool = field(default=False, init=False)
@@ -700,7 +700,7 @@ class Pipeline:
         return bool(np.ptp(places, axis=0).max() < 2 * self.settings.still)
 
     def settle(self) -> None:
-        """Come to rest at the mean of the last places; the time since when it is there is kept if it did not move."""
+        """Come to rest at the mean of the last places; keep the time of its arrival if it did not move."""
         pose = self.pose.copy()
         pose[:3, 3] = np.mean([place for _, place in self._places], axis=0)
         if np.linalg.norm(pose[:3, 3] - self._rest[:3, 3]) > 2.5 * self.settings.still:

@@ -11,13 +11,13 @@ SLICE = 0.01
 """Height in metres of the slices in each of which the points lie on one circle."""
 
 MIN_SLICES, MIN_SLICE_POINTS = 5, 15
-"""Least numbers of slices, and of points of a slice that counts."""
+"""Minimum numbers of slices, and of points of a slice that counts."""
 
 MAX_OFF = 0.006
 """Distance in metres from its circle beyond which a point shows something else, such as a handle."""
 
 MIN_ROUND_SHARE = 0.85
-"""Least share of the points that lie on the circles."""
+"""Minimum share of the points that lie on the circles."""
 
 MAX_MISFIT = 0.0025
 """Largest root mean square distance in metres of these points from the circles; faces of a box are farther off."""
@@ -26,7 +26,7 @@ MAX_RADIUS = 0.15
 """Largest radius in metres of an upright round thing."""
 
 SECTORS, MIN_SECTORS = 36, 11
-"""Number of sectors of a circle, and the least number in which points must be."""
+"""Number of sectors of a circle, and the minimum number of them in which points must be."""
 
 
 def circle_around(points: NDArray[np.float64]) -> Circle | None:

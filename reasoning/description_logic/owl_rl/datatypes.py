@@ -280,7 +280,7 @@ def value_of(literal: str) -> DataValue | None:
 
 
 def is_in(value: DataValue, datatype: str) -> bool | None:
-    """Return whether a value belongs to a datatype , or None if the datatype is not known.
+    """Return whether a value belongs to a datatype, or None if the datatype is not known.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class FactIndex(TermIndex[int]):
         Parameters
         ----------
         atoms
-            Patterns, of which each variable has one value in all.
+            Patterns; a variable has the same value in all of them.
         binding
             Values of variables that are known before.
         found

@@ -60,7 +60,7 @@ class GivenUp:
 class Picture:
     """A box for every object, and the facts that it does not satisfy.
 
-    ``boxes`` (n, 2, 2) are least and greatest corners in metres, x to the right, y away from the viewer; they are
+    ``boxes`` (n, 2, 2) are minimum and maximum corners in metres, x to the right, y away from the viewer; they are
     checked to satisfy every firm fact. ``overlapping`` are pairs that overlap in part. ``named_otherwise`` are denials
     that hold by the atoms of such a pair, but not by its exact relation. ``finished`` is False if the time ran out
     before all preferences were tried.
@@ -206,7 +206,7 @@ class _Task:
     def _relaxed(self, soft: Sequence[Demand], deadline: Deadline) -> Relaxed | None:
         found = relaxed(self.points, self.base, [*self.firm, *self.sizes], soft, deadline)
         if isinstance(found, tuple):
-            raise AssertionError("the firm demands were satisfiable before, and are not any more")
+            raise AssertionError("the firm demands were satisfiable before, and no longer are")
         return found
 
     def _composed(self, best: Relaxed, apart: Sequence[Demand], deadline: Deadline) -> NDArray[np.int64]:

@@ -107,7 +107,7 @@ def relaxed(
     firm
         Demands that must hold.
     soft
-        Demands that are given up if need be, the last first.
+        Demands that are given up if necessary, the last first.
     deadline
         Time limit.
 

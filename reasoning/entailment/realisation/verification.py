@@ -22,7 +22,7 @@ def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray
     graph
         The stated facts as a graph.
     boxes
-        Least and greatest corners, shape (n, 2, 2).
+        Minimum and maximum corners, shape (n, 2, 2).
 
     Returns
     -------
@@ -55,7 +55,7 @@ def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> ND
     graph
         The stated facts as a graph.
     boxes
-        Least and greatest corners, shape (n, 2, 2).
+        Minimum and maximum corners, shape (n, 2, 2).
 
     Returns
     -------
@@ -86,7 +86,7 @@ def partly_overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, 2).
+        Minimum and maximum corners, shape (n, 2, 2).
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Find the members of groups of unknown number: all perceived things that fit what is said of a group.
+"""Find the members of groups of unknown number: all perceived things that fit what is said about a group.
 
 The engines match a group (*the chairs*) to one thing, which stands for it. Its members are found afterwards, with
 everything else at its match: a thing is a member if its label, size and colour fit the noun about as well as those of
@@ -22,7 +22,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 
 MEMBER_FROM = 0.5
-"""Probability from which a thing counts as a member of a group."""
+"""Minimum probability at which a thing counts as a member of a group."""
 
 Array = NDArray[np.float64]
 Assignment = NDArray[np.int64]
@@ -32,7 +32,7 @@ def with_members(found: Grounding, evidence: Evidence) -> Grounding:
     """Return a grounding with the members of the groups of unknown number.
 
     The match of a group is its most probable member, whose probability is that of being a member. It is decided if the
-    membership of all things is.
+    membership of every thing is decided.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Find the objects that a description cannot tell apart: the orbits of its automorphisms.
 
 Two objects are interchangeable where a renaming of the objects that exchanges them preserves every fact, and everything
-else that is known of each object. Colour refinement (Weisfeiler and Leman 1968) finds the candidates; a swap of the
+else that is known about each object. Colour refinement (Weisfeiler and Leman 1968) finds the candidates; a swap of the
 two, or a search that follows one choice at a time, proves that they are interchangeable. Pairs that could not be proved
 within the budget are not reported. networkx lists isomorphisms one by one, of which there are k! for k interchangeable
 objects, and finds no orbits; its connected components take 5 to 9 times as long as the 12 lines here.
@@ -34,7 +34,7 @@ def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[t
     graph
         The relation graph of n objects.
     colours
-        Everything else that is known of each node, shape (n,); only nodes of equal colour can be interchangeable.
+        Everything else that is known about each node, shape (n,); only nodes of equal colour can be interchangeable.
 
     Returns
     -------

@@ -38,7 +38,8 @@ SIMILARITY_CELLS_PER_SECOND, MAX_LATENESS = 2e7, 0.1
 the deadline, in seconds."""
 
 APART, MAX_NAMED = 0.05, 10
-"""Error of a marginal from which the note on disagreeing chains names an object, and the maximum number of names."""
+"""Minimum error of a marginal of an object that the note on disagreeing chains names, and the maximum number of
+names."""
 
 UNRELATED_NOTE = "the description{} fits this scene so poorly that it is probably of another scene"
 

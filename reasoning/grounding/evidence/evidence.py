@@ -51,7 +51,7 @@ SECONDS_PER_CELL = 1e-8
 """Seconds for copying one cell of the tables for an engine, which cannot be interrupted."""
 
 HELD_FROM = 0.5
-"""Degree from which a graded word counts as holding of a pair."""
+"""Minimum degree at which a graded word counts as holding of a pair."""
 
 MAX_KEPT_THINGS = 150
 """Maximum number of things for which the likelihood ratios of all pairs are cached beside the tables."""
@@ -427,7 +427,7 @@ class Evidence:
     def modelled(self) -> dict[int, NDArray[np.float64]]:
         """Degrees of comparable facts with a word that only its model decides, (n2, n2) each, by their positions.
 
-        The degree is that of the model where the word holds, which is from one half on, and 0 where it does not. It is
+        The degree is the model's where the word holds, that is, where it is at least one half, and 0 elsewhere. It is
         one half in a scene without boxes, which says nothing about such words.
         """
         found: dict[int, NDArray[np.float64]] = {}

@@ -123,7 +123,7 @@ def shortlist(
     Returns
     -------
     Shortlist
-        The chosen things, and what is known of the rest.
+        The chosen things, and what is known about the rest.
 
     Raises
     ------

@@ -30,7 +30,7 @@ BLOCKS_SHARE = 0.5
 """Share of the memory for the pairs of candidates, which are freed before the shortlist is compared."""
 
 MAX_THINGS, MIN_THINGS = 400, 60
-"""Maximum number of things on a shortlist, and the least value to which exact sums may lower that maximum."""
+"""Maximum number of things on a shortlist, and the minimum to which exact sums may lower that maximum."""
 
 
 def evidence_of_shortlist(

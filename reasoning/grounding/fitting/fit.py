@@ -51,7 +51,7 @@ def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArra
     Returns
     -------
     list of ndarray
-        Boxes of each scene, least and greatest corners, shape (size, 2, 2).
+        Boxes of each scene, minimum and maximum corners, shape (size, 2, 2).
     """
     rng = np.random.default_rng(seed)
     centres = rng.uniform(0.0, 1.0, (count, size, 2))
@@ -310,7 +310,7 @@ def take_out(
 def _examples(scenes: Iterable[SaidPairs]) -> dict[str, float]:
     """Return the weight of the stated words of each family with at least one; words without a model have none.
 
-    Nor have *facing* and its like where no orientation is known.
+    Words such as *facing* have none where no orientation is known.
     """
     weights: dict[str, float] = {}
     for scene in scenes:

@@ -20,7 +20,7 @@ from deixis.reasoning.grounding.evidence.properties.sizes import MIN_SPREAD
 Array = NDArray[np.float64]
 
 VIEWS_OF_PRIOR = 5.0
-"""Number of views that the prior spread counts as."""
+"""Weight of the prior spread, as a number of views."""
 
 PRIOR_SPREAD = 0.2
 """Prior standard deviation of the logarithm within a kind: the mean over the usual sizes of the ontology."""

@@ -1,11 +1,11 @@
 """Posterior over the hypotheses of a description: this scene, from the stated or another side, or another scene.
 
 Sides, scenes and maps have one common posterior. The weight of a side is its prior times a power of the likelihood of
-the facts as seen from there, Z / U: Z sums the exponentials of the values of all maps, U does so without the facts.
-*Another scene* explains kinds and labels as well as this one, or by chance where they speak against this one. It
-explains the facts as well as scenes do that the facts do not describe. How well that is depends on M, the information
-that the facts could give beyond telling the things apart: the sum of the largest entry of each fact's table, less the
-entropy of the maps without facts, and at least 0.
+the facts as seen from there, Z / U: Z is the sum of the exponentials of the values of all maps, U the same sum without
+the facts. *Another scene* explains kinds and labels as well as this one, or by chance where they speak against this
+one. It explains the facts as well as scenes do that the facts do not describe. How well that is depends on M, the
+information that the facts could give beyond telling the things apart: the sum of the largest entry of each fact's
+table, less the entropy of the maps without facts, and at least 0.
 
     C                        = M + CHANCE_EXCESS sqrt(M)
     log weight of a side     = log prior + FACTS_POWER (log Z - log U)

@@ -156,7 +156,7 @@ class Problem:
 
 
 def empty_tables(kinds: int, things: int) -> NDArray[np.float32]:
-    """Allocate the tables of a problem, filled with 0, in a way that compiling it does not copy them.
+    """Allocate the tables of a problem, filled with 0, so that compiling the problem does not copy them.
 
     They are a view of the array that :class:`Compiled` holds; tables and a copy would take half as much memory again.
 

@@ -54,7 +54,7 @@ def update(situation: Situation, candidates: Candidates, question: Question, ans
     Parameters
     ----------
     situation
-        The scene and what is known of it.
+        The scene and what is known about it.
     candidates
         Groundings that are possible so far.
     question
@@ -169,7 +169,7 @@ def begin(
     Parameters
     ----------
     situation
-        The scene and what is known of it.
+        The scene and what is known about it.
     candidates
         Groundings to tell apart.
     kinds

@@ -92,7 +92,7 @@ def answers_of(question: Question, situation: Situation, assignments: NDArray[np
     question
         The question.
     situation
-        The scene and what is known of it.
+        The scene and what is known about it.
     assignments
         Thing of each object in each map, shape (k, n1); -1 for none.
 
@@ -127,7 +127,7 @@ def best_question(
     Parameters
     ----------
     situation
-        The scene and what is known of it.
+        The scene and what is known about it.
     candidates
         Groundings to tell apart.
     kinds
@@ -158,7 +158,7 @@ def questions(
     Parameters
     ----------
     situation
-        The scene and what is known of it.
+        The scene and what is known about it.
     candidates
         Groundings to tell apart.
     kinds

@@ -8,7 +8,7 @@ from enum import StrEnum
 from deixis.answers import Answer
 
 DECIDED = 0.95
-"""Probability from which on a reference is decided."""
+"""Minimum probability of a decided reference."""
 
 
 class Frame(StrEnum):

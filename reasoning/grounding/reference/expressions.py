@@ -55,7 +55,7 @@ class Attributes:
         return self.related.relation(subject, thing).name.removeprefix("exactly_")
 
     def fitting(self, others: Sequence[int], word: str, thing: int) -> list[int]:
-        """Return those of some objects that a wide relation to one object fits, this object itself included.
+        """Return the objects, among some, that have a wide relation to an object, and this object itself.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class Attributes:
 
 @dataclass(frozen=True)
 class Description:
-    """Attributes that are said of an object: its noun always, the others where they rule something out.
+    """Attributes that are said about an object: its noun always, the others where they rule something out.
 
     ``size`` is ``largest`` or ``smallest``. ``relations`` are pairs of a relation and an object. ``rivals`` are the
     objects that the description fits as well.
@@ -133,7 +133,7 @@ def single_out(
     among
         Objects to tell it from.
     attributes
-        What can be said of the objects.
+        What can be said about the objects.
     landmarks
         Objects that relations may mention.
     least
@@ -182,7 +182,7 @@ def relate(
     description
         Description with its rivals.
     attributes
-        What can be said of the objects.
+        What can be said about the objects.
     landmarks
         Positions of the objects that relations may mention.
     least
@@ -222,7 +222,7 @@ def reading_order(attributes: Attributes) -> Iterator[int]:
     Parameters
     ----------
     attributes
-        What can be said of the objects.
+        What can be said about the objects.
 
     Yields
     ------

@@ -49,7 +49,7 @@ class Relation:
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """A noun phrase: what it says of the object that it stands for; ``noun`` is empty where no noun is given.
+    """A noun phrase: what it says about the object that it stands for; ``noun`` is empty where no noun is given.
 
     ``count`` is the number of objects in a group (*between two chairs*); None for one object. ``plural`` is True for a
     noun in the plural. ``anything`` is True for a noun that every object fits (*the tallest thing*). ``other_nouns``

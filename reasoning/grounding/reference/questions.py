@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 WRONG_ANSWERS = 0.002
-"""Share of answers that are wrong, for which a later answer can make up."""
+"""Share of wrong answers, which later answers can correct."""
 
 MIN_PROBABILITY = 2e-3
 """Probability below which an object does not decide how clear a question is."""
@@ -30,7 +30,7 @@ MAX_LANDMARKS = 14
 """Maximum number of landmarks that questions compare."""
 
 CLEAR = 1.15
-"""Least ratio of two lengths that an answer tells apart."""
+"""Minimum ratio of two lengths that an answer tells apart."""
 
 
 def best_question(probabilities: Array, room: Room, labelled: bool = True, enough: float = DECIDED) -> Question | None:
@@ -45,7 +45,7 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True, enoug
     labelled
         Whether questions may use the labels of the scene.
     enough
-        Probability of an object from which on no more questions are asked.
+        Probability of an object at which no more questions are asked.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def fewest_questions(shares: Array, enough: float = DECIDED) -> float:
     shares
         Probabilities of the objects, shape (n,).
     enough
-        Probability of an object from which on no more questions are asked.
+        Probability of an object at which no more questions are asked.
 
     Returns
     -------

@@ -65,7 +65,7 @@ PLACES = {
 
 
 def paraphrase(query: Query) -> str:
-    """Return what a query says of the object, as a noun phrase with its viewer.
+    """Return what a query says about the object, as a noun phrase with its viewer.
 
     Parameters
     ----------

@@ -189,7 +189,7 @@ class _Ledger:
 class JointSolution:
     """The verdict on several networks together, with the closure that it rests on.
 
-    ``boxes`` satisfy all networks, shape (n, 2, 2), least and greatest corner, if the search ran and found them;
+    ``boxes`` satisfy all networks, shape (n, 2, 2), minimum and maximum corner, if the search ran and found them;
     distances are in units of the reference length. ``reason`` says why the verdict is undecided, or why there are no
     boxes although they were requested.
     """

@@ -36,7 +36,7 @@ MemoryLimit = Annotated[
     float, typer.Option(min=0.01, metavar="GB", help="Refuse a problem that needs more memory, in gigabytes.")
 ]
 HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Ignore the labels in the scene.")]
-Image = Annotated[str | None, typer.Option(metavar="NAME", help="Which image of a COCO file.")]
+Image = Annotated[str | None, typer.Option(metavar="NAME", help="Image of a COCO file, by file name or id.")]
 MemoryDir = Annotated[
     Path | None,
     typer.Option("--memory", metavar="DIR", help="Folder of the memory (default: $DEIXIS_MEMORY, else in your home)."),
@@ -91,7 +91,7 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
     Raises
     ------
     DeixisError
-        Where a file is a folder, is among the files to read, is named twice, or its folder cannot be made.
+        Where a file is a folder, is among the files to read, is named twice, or its folder cannot be created.
     """
     from deixis.errors import DeixisError
 
@@ -107,7 +107,7 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise DeixisError(f"{file}: its folder cannot be made: {error.strerror}") from error
+            raise DeixisError(f"{file}: its folder cannot be created: {error.strerror}") from error
 
 
 def require_plot(file: Path | None) -> None:

@@ -86,7 +86,7 @@ def _layouts(memory: Path) -> tuple[ox.Store, list[ox.NamedNode]]:
 def categories_in(memory: Path) -> set[str]:
     """Read the names of the taught categories from a copy of the database, as LevelDB writes where it opens.
 
-    The copy links the tables instead of copying them, and is removed again. One look-up a category is enough, as the
+    The copy links the tables instead of copying them, and is removed again. One look-up per category is enough, as the
     keys of the views are sorted by category.
     """
     from tempfile import TemporaryDirectory

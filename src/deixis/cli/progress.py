@@ -42,7 +42,7 @@ class _LateBar:
                 self._bar.update(self._bar.tasks[0].id, completed=done, total=total, description=self._state[2])
 
     def close(self) -> None:
-        """Remove the bar; it does not appear any more."""
+        """Remove the bar for good."""
         self._timer.cancel()
         self._timer.join()
         if self._bar is not None:

@@ -52,7 +52,7 @@ RING = ("top", "top_right", "right", "bottom_right", "bottom", "bottom_left", "l
 class GeneratedTable:
     """Perceived boxes (n2), m facts about n1 objects, and the truth: which box each object is."""
 
-    boxes: NDArray[np.float64]  # (n2, 2, 2): least and greatest corner, metres
+    boxes: NDArray[np.float64]  # (n2, 2, 2): minimum and maximum corner, metres
     ends: NDArray[np.int64]  # (m, 2): subject and object
     words: NDArray[np.int64]  # (m,): index of the stated exact relation
     off: NDArray[np.bool_]  # (m,): True if it was replaced by a neighbouring one
@@ -187,7 +187,7 @@ def lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64]
     Returns
     -------
     tuple of array
-        Least and greatest corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
+        Minimum and maximum corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
     """
     seats = max(1, round(count / (0.75 * len(PIECES)) + 0.5))
     columns = max(1, round(2 * np.sqrt(seats)))
@@ -212,7 +212,7 @@ def lay_clusters(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float
     Returns
     -------
     tuple of array
-        Least and greatest corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
+        Minimum and maximum corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
     """
     clusters = max(1, round(count / CLUSTER))
     places = rng.uniform(0, 1, (clusters, 2)) * np.sqrt(clusters) * CLUSTER_APART
@@ -233,7 +233,7 @@ def lay_rows(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64],
     Returns
     -------
     tuple of array
-        Least and greatest corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
+        Minimum and maximum corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
     """
     columns = max(1, round(np.sqrt(2 * count)))
     places = rng.permutation(columns * -(-count // columns))[:count]
@@ -272,7 +272,7 @@ def nearest(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
     Parameters
     ----------
     boxes
-        Least and greatest corners in metres, shape (n, 2, 2).
+        Minimum and maximum corners in metres, shape (n, 2, 2).
 
     Returns
     -------

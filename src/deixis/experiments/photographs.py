@@ -24,7 +24,7 @@ from deixis.ontology.tbox import Ontology
 
 FOLDER = "vrd"
 MIN_OBJECTS = 4
-"""Least number of objects that the ten exact words relate in a photograph."""
+"""Minimum number of objects that the ten exact words relate in a photograph."""
 
 WORDS = {
     "on": "on",
@@ -63,7 +63,7 @@ class Photograph(NamedTuple):
     """The description of n objects, and the boxes that they refer to, in the order of the description's nodes."""
 
     description: RelationGraph
-    boxes: NDArray[np.float64]  # (n, 2, 2): least and greatest corner, pixels, y up
+    boxes: NDArray[np.float64]  # (n, 2, 2): minimum and maximum corner, pixels, y up
 
 
 def photographs_folder() -> Path | None:

@@ -14,13 +14,13 @@ from deixis.reasoning.attributes.attribute import MEASURES, Attribute
 Array = NDArray[np.float64]
 
 HIGHLIGHT = 20.0
-"""Lightness above the median of a thing from which on a point is a highlight, in CIELAB."""
+"""Minimum CIELAB lightness of a highlight above the median lightness of its thing."""
 
 MIN_POINTS = 20
 """Minimum number of coloured points of a thing whose surface is measured."""
 
 LEAST_SIDE = 0.003
-"""Least length of a side in metres, below which sides are not compared."""
+"""Minimum length of a side in metres, below which sides are not compared."""
 
 
 def measured(scene: Scene) -> Array:

@@ -38,7 +38,7 @@ class Fix:
 
 
 def fixes(document: Document, problems: Iterable[Problem]) -> Iterator[Fix]:
-    """Yield the quick fixes of problems: put the suggested word, remove a needless statement, add a viewpoint.
+    """Yield the quick fixes of problems: insert the suggested word, remove a needless statement, add a viewpoint.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ def english_problems(document: EnglishText) -> list[Problem]:
 
 
 def english_fixes(problems: Iterable[Problem]) -> Iterator[Fix]:
-    """Yield the quick fixes of problems: put the suggested word.
+    """Yield the quick fixes of problems: insert the suggested word.
 
     Parameters
     ----------

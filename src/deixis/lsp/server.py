@@ -1,7 +1,7 @@
 """The language server: features of documents offered to an editor by the Language Server Protocol, over pipes.
 
 Errors of the parser are sent at once, warnings after a pause in typing. Long computations run in threads with time
-limits, so that the server goes on answering.
+limits, so that the server keeps answering.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class LayoutServer(LanguageServer):
     def document(self, uri: str) -> Document | EnglishText:
         """Return the document that an editor shows; the same object until its text changes.
 
-        A plain text, or a file ``NAME.txt``, is English.
+        Plain text, or a file ``NAME.txt``, is English.
 
         Parameters
         ----------

@@ -81,7 +81,7 @@ def require_picture(path: str | Path) -> Path:
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise DeixisError(f"{target}: the folder of the picture cannot be made: {error.strerror}") from error
+        raise DeixisError(f"{target}: the folder of the picture cannot be created: {error.strerror}") from error
     return target
 
 

@@ -1,4 +1,4 @@
-"""Draw the story of a live run: a picture of each key moment, a picture of the most telling ones, and a page."""
+"""Draw the story of a live run: a picture of each key moment, one picture of three of them, and a page."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from deixis.robot.live.run import LiveRobot
 
 OVERVIEW, PAGE = "story.png", "index.html"
-"""Names of the picture of the most telling moments, and of the page."""
+"""Names of the picture of the key moments, and of the page."""
 
 SHADES = 96
 """Number of colours of a picture, which keeps its file small."""
@@ -38,14 +38,14 @@ MAX_LINES, MAX_SAID = 7, 3
 
 
 def write_story(robot: LiveRobot, folder: str | Path) -> Path:
-    """Write the story of a run: pictures of its key moments, one of the most telling of them, and a page.
+    """Write the story of a run: pictures of its key moments, one picture of three of them, and a page.
 
     Parameters
     ----------
     robot
         The robot at the end of its story.
     folder
-        The folder, which is made if need be.
+        The folder, which is made if it does not exist.
 
     Returns
     -------

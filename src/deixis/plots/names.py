@@ -62,7 +62,7 @@ POINT = 8.0
 """Side of the square around a point that names avoid, in pixels."""
 
 LEADER = 10.0
-"""Pixels between a name and its thing from which a line joins them."""
+"""Minimum number of pixels between a name and its thing at which a line joins them."""
 
 
 class Box(NamedTuple):
@@ -135,8 +135,8 @@ def write_names(
     """Write every thing's label where it covers no other name, and as little else as possible.
 
     A name that does not fit on its thing stands beside it. A line joins the two where they are apart; it crosses no
-    other thing and no name. Where things are very many, or there is no room, a name is left out, and the axis says how
-    many are. This fixes the layout of the figure.
+    other thing and no name. Where things are very many, or there is no room, names are left out, and the axis gives
+    their number. This fixes the layout of the figure.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def _measured(figure: Figure, text: str) -> tuple[float, float]:
 
 
 def _places(outline: Box, width: float, height: float, most: float) -> Iterator[NamePlace]:
-    """Yield places for a name: on its thing, at several heights, level or upright; then around it, ever farther."""
+    """Yield places for a name: on its thing, at several heights, level or upright; then around it, nearest first."""
 
     def around(x: float, y: float, width: float, height: float) -> Box:
         return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
@@ -243,7 +243,7 @@ def _cheapest(
 ) -> NamePlace | None:
     """Return the cheapest place that covers no name and no leader, and whose own leader crosses no thing and no name.
 
-    What it covers of other things and points costs too. ``outline`` is that of the thing itself; other things, names
+    Covering other things or points costs too. ``outline`` is that of the thing itself; other things, names
     and points are boxes in pixels of shape (n, 4).
     """
     bears = outline.shared(others) >= 0.98 * outline.area

@@ -53,7 +53,7 @@ LEGEND = (
 )
 
 Window = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Least and greatest x and y of the picture, in metres."""
+"""Minimum and maximum x and y of the picture, in metres."""
 
 
 def plot_perceived(scene: Scene, path: str | Path) -> None:

@@ -1,6 +1,6 @@
 """The robot's fluents on the blackboard: what it saw, what people told and showed it, and what it concluded.
 
-Each fluent says how it became known: seen by the robot, shown or said by a person, or inferred. What was said of an
+Each fluent says how it became known: seen by the robot, shown or said by a person, or inferred. What was said about an
 expected object holds until the object is seen (``sameAs`` then names the thing) or contradicted.
 """
 
@@ -32,13 +32,13 @@ UNNAMED, NAMELESS = "unnamed", "nameless"
 """Predicates of tables whose layout has no name: the scene, and that a person gave no name for it."""
 
 CALLED, NOT_CALLED = "called", "notCalled"
-"""Predicates of what a person calls a thing that is tracked, and does not call it."""
+"""Predicates of the names that a person gives to a tracked thing, and of those that the person denies."""
 
 SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""
 
 MIN_DURATION = 1e-3
-"""Least duration of a fluent in seconds."""
+"""Minimum duration of a fluent in seconds."""
 
 Found = tuple[str, str, str]
 """A statement: subject, predicate and object."""
@@ -125,7 +125,7 @@ class Diary:
             self.board.write(*changes)
 
     def refresh(self) -> None:
-        """Forget the fluents that the blackboard does not hold any more, because they were taken back."""
+        """Forget the fluents that were taken back from the blackboard."""
         held = {each.id for each in self.board.now()}
         self._found = {statement: each for statement, each in self._found.items() if each.id in held}
         self._places = {id: each for id, each in self._places.items() if each.id in held}
@@ -301,7 +301,7 @@ class Diary:
     # ---- expected objects
 
     def expects(self, objects: Collection[ExpectedObject], landmarks: Mapping[str, str]) -> None:
-        """Write what a sentence said of objects that are expected.
+        """Write what a sentence said about objects that are expected.
 
         Parameters
         ----------

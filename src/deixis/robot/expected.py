@@ -22,7 +22,7 @@ PRIOR_PRESENT = 0.95
 """Probability that an object is there when a person says so."""
 
 MIN_MATCH_PROBABILITY = 0.9
-"""Probability from which a thing is taken for the expected object."""
+"""Minimum probability at which a thing is taken for the expected object."""
 
 DETECTION_PROBABILITY = 0.7
 """Probability that one look detects a thing whose place is in view."""
@@ -31,10 +31,10 @@ LOOK_INTERVAL = 1.0
 """Time in seconds between two looks that count as independent."""
 
 MIN_PRESENT_PROBABILITY = 0.05
-"""Probability below which an object is not expected any more."""
+"""Probability below which an object is no longer expected."""
 
 MIN_SHARE_IN_VIEW = 0.8
-"""Share of the place of an object from which all of it counts as in view."""
+"""Minimum share of the place of an object at which all of it counts as in view."""
 
 DESCRIBED = PLACES | frozenset(
     (
@@ -149,7 +149,7 @@ class ExpectedObject:
 
     @property
     def properties(self) -> tuple[tuple[str, str | None], ...]:
-        """Places and properties that were said of it: names of relations and claims, with another object or a word.
+        """Places and properties that were said about it: names of relations and claims, with another object or a word.
 
         What was denied or hedged is left out.
         """
@@ -248,7 +248,7 @@ def introduced(script: Script) -> tuple[str, ...]:
 
 
 def described_predicates() -> frozenset[str]:
-    """Return the predicates of what a description may say of an object: relations, places and properties.
+    """Return the predicates of what a description may say about an object: relations, places and properties.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Layouts over several tables: the text that describes one, and which relations hold and how things lie on tables.
 
-A layout that a text described on one table, and that lay on others too, is one concept. What its tables taught is
+A layout that a text described on one table, and that was laid on other tables too, is one concept. Its tables are
 counted (:mod:`deixis.learning.layouts.experience`) and kept with the lessons in the memory.
 """
 
@@ -36,14 +36,14 @@ FACT_HOLDS, SUPPORT_HOLDS = 0.998, 0.98
 which a small error of heights breaks."""
 
 MIN_TURN = np.deg2rad(28.0)
-"""Angle from which a thing is compared with how it would lie straight."""
+"""Minimum angle at which a thing is compared with how it would lie straight."""
 
 TURN_DEVIATION = np.deg2rad(7.0)
 """Standard deviation of the direction of things in their places."""
 
 MIN_TURN_OUTLIERS = 1e-4
-"""Least share of things that lie anyhow without a mistake. It is a tenth with no table seen, and a tenth of that with
-each further one."""
+"""Minimum share of things that lie at any angle without a mistake. It is a tenth with no table seen, and a tenth of
+that with each further one."""
 
 OBSERVED_WEIGHT = 0.5
 """Factor of the evidence of relations that were seen but not stated, as those of different pairs depend on each other.
@@ -54,10 +54,11 @@ HELD_WEIGHT = 0.5
 """Factor of the evidence of relations that hold, since those of one thing in its place depend on each other."""
 
 OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
-"""Prior standard deviation in metres of the offset between two things, and the number of tables that it counts as."""
+"""Prior standard deviation in metres of the offset between two things, and the weight of this prior as a number of
+tables."""
 
 MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
-"""Height in metres above the table from which a thing must rest on another one, and the error of that one's height."""
+"""Minimum height in metres at which a thing must rest on another one, and the error of the height of that one."""
 
 MAX_SLENDER_WIDTH, MAX_SLENDERNESS = 0.02, 2.5
 """Width in metres below which a thing cannot stand if it is higher than ``MAX_SLENDERNESS`` times its width."""

@@ -1,7 +1,7 @@
 """Lessons of a robot: tables on which a teacher described a layout, what each taught, and what still waits.
 
 A decided match is learned at once. The others wait for an answer, for a person who points, or for what further tables
-teach of the layout and of its things. They are then learned in hindsight, because a lesson keeps its table.
+teach about the layout and its things. They are then learned in hindsight, because a lesson keeps its table.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding
 
 QUESTION_COST = 0.5
-"""Cost of a question in nats: it is asked if its answer is expected to tell more."""
+"""Cost of a question in nats: it is asked if the expected information of its answer is larger."""
 
 MIN_SETTLED_PROBABILITY = 0.97
-"""Probability from which a role that waits is taught in hindsight."""
+"""Minimum probability at which a role that waits is taught in hindsight."""
 
 
 class SettledBy(StrEnum):
@@ -187,7 +187,7 @@ class TableLesson:
         Returns
         -------
         TableLesson
-            The lesson with the roles that are left. A role whose thing is not known any more waits again.
+            The lesson with the roles that are left. A role whose thing is no longer known waits again.
         """
         if table is None:
             return replace(self, settled={}, waiting={})

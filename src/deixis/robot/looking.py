@@ -1,8 +1,8 @@
 """Explain a table by what was learned: its layout, the name of each thing, and the mistakes.
 
-The looks of the things (recognition, sizes) and the layouts are one posterior: each layout explains the table with as
-few mistakes as it can (:mod:`deixis.reasoning.comparison.explanation`). The probability of a layout is that of all its
-explanations together, and the name of a thing is that of its role, averaged over all of them.
+The appearance of the things (recognition, sizes) and the layouts have one posterior: each layout explains the table
+with as few mistakes as it can (:mod:`deixis.reasoning.comparison.explanation`). The probability of a layout is that of
+all its explanations together, and the name of a thing is that of its role, averaged over all of them.
 """
 
 from __future__ import annotations
@@ -180,7 +180,7 @@ class Look(Answer):
         Returns
         -------
         dict
-            A box of shape (2, 2), least and greatest corner in metres, for each role whose place is known. A missing
+            A box of shape (2, 2), minimum and maximum corner in metres, for each role whose place is known. A missing
             thing has the mean size that was seen.
         """
         if self.layout is None:

@@ -1,4 +1,4 @@
-"""Modules of the robot: each knows only the blackboard, and only what it declares.
+"""Modules of the robot, which access only the blackboard, and there only the statements that they declare.
 
 A module declares which statements it reads and which it writes, as patterns. Its board shows it the former, and refuses
 other writes. The same module runs in a thread or in a process of its own; see :mod:`deixis.robot.runtime`.
@@ -38,7 +38,7 @@ RESTART_PAUSE = 0.2
 
 
 Made = TypeVar("Made")
-"""Class of what a name of a class makes."""
+"""Class of an object that is made from the name of its class."""
 
 
 class AccessError(DeixisError, PermissionError):
@@ -295,7 +295,7 @@ def made(factory: str, base: type[Made], **settings: Any) -> Made:
     try:
         found = getattr(import_module(place), name)(**settings)
     except (ImportError, AttributeError, TypeError, ValueError) as error:
-        raise ModuleError(f"the module '{factory}' cannot be made: {error}") from error
+        raise ModuleError(f"the module '{factory}' cannot be loaded: {error}") from error
     if not isinstance(found, base):
         raise ModuleError(f"'{factory}' must be a {base.__name__}, got {type(found).__name__}")
     return found

@@ -30,16 +30,16 @@ BOX_SIDE = 0.04
 """Side length in metres of the boxes."""
 
 MAX_SUPPORT_HEIGHT = 0.05
-"""Greatest height in metres of a thing on which an object may lie."""
+"""Maximum height in metres of a thing on which an object may lie."""
 
 MIN_PLACE_RATIO = 0.2
-"""Probability of a place, as a share of that of the best one, from which an object may well be there."""
+"""Minimum probability of a place where an object may well be, as a share of the probability of the best place."""
 
 MIN_CAMERA_HEIGHT = 0.05
-"""Least height in metres of a camera above the table whose position is known."""
+"""Minimum height in metres of a camera above the table whose position is known."""
 
 MAX_THINGS = 90
-"""Number of things from which places are not computed."""
+"""Minimum number of things for which places are not computed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +90,7 @@ def places_of(script: Script, role: str, scene: Scene, meaning: Meaning) -> Plac
     Returns
     -------
     Places or None
-        The places; None if the table has no things, so that nothing is known of its extent, or more than
+        The places; None if the table has no things, so that nothing is known about its extent, or more than
         ``MAX_THINGS``.
     """
     if not 0 < len(scene.objects) <= MAX_THINGS:

@@ -3,7 +3,7 @@
 The owner answers calls and sends each module a notice of each change; there is no daemon and no discovery. A notice
 holds the log entry if the module reads it, so that the module needs no call; where notices are missing, it reads the
 log. All keys begin with a random token, which only the processes of one runtime know. Nothing is stored in zenoh: the
-log stays the truth.
+log stays authoritative.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ class Hub:
 
 
 class ProcessRunner(Runner):
-    """A module in a process, which is started again if it dies, until :data:`MAX_STARTS` starts were in vain."""
+    """A module in a process, which is started again if it dies, until :data:`MAX_STARTS` starts have failed."""
 
     def __init__(self, name: str, where: dict[str, Any], position: int, report: Callable[[str], None]) -> None:
         self._name, self._where, self._report = name, where, report

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 
 MIN_NAME_PROBABILITY = 0.8
-"""Probability from which a name is written to the blackboard as the category of a thing."""
+"""Minimum probability at which a name is written to the blackboard as the category of a thing."""
 
 GROUNDING_TIME_LIMIT = 5.0
 """Time limit in seconds for looking for one expected object."""
@@ -545,7 +545,7 @@ class Robot(Closing):
             If it describes a layout before the robot has seen a table.
         """
         if isinstance(text, str) and not text.strip():
-            raise RobotError("`text` must say something, got blank text; describe how the table is laid")
+            raise RobotError("`text` must describe a layout, got a blank text; describe how the table is laid")
         if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
             return self._expect_objects(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
@@ -619,7 +619,7 @@ class Robot(Closing):
         return tuple(self.expected[len(known) :])
 
     def _landmarks(self, script: Script) -> dict[str, str]:
-        """Return the ids on the blackboard of the objects of a sentence that are surely seen."""
+        """Return the ids on the blackboard of the objects of a sentence that have certainly been seen."""
         if self._scene is None or not script.objects:
             return {}
         found = self.session.ground(script, self.knowledge().recognised(self.scene), time_limit=GROUNDING_TIME_LIMIT)
@@ -649,7 +649,7 @@ class Robot(Closing):
     def _sighting(self, one: ExpectedObject) -> Sighting:
         """Return how an expected object looks in the present scene.
 
-        Things that may be any of several objects of one sentence (*two forks*) are those of each.
+        Things that may be any of several objects of one sentence (*two forks*) are listed for each of these objects.
         """
         knowledge = self.knowledge()
         scene = knowledge.recognised(self.scene)

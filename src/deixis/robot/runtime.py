@@ -1,7 +1,7 @@
 """Run modules on one blackboard, as threads of this process or as processes of their own.
 
 The process that makes a :class:`Runtime` owns the blackboard. Each module has a position in the log, and gets each
-change that it reads once and in order. A module that raises or dies is reported in one line, and goes on from its
+change that it reads once and in order. A module that raises or dies is reported in one line, and continues from its
 position. A change during which a process was killed is delivered again.
 """
 
@@ -33,7 +33,7 @@ class Runtime(Closing):
     Raises
     ------
     ModuleError
-        If two modules have one name, or one cannot be made.
+        If two modules have one name, or one cannot be loaded.
     """
 
     def __init__(

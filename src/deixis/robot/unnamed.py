@@ -27,10 +27,10 @@ from deixis.robot.layouts import LearnedLayout
 from deixis.view_store import UNKNOWN
 
 MIN_THINGS = 3
-"""Number of things from which an arrangement says something."""
+"""Minimum number of things at which an arrangement says something."""
 
 MIN_TABLES = 3
-"""Number of tables of one kind from which its name is asked for."""
+"""Minimum number of tables of one kind at which its name is asked for."""
 
 SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""
@@ -39,7 +39,7 @@ MIN_EXPLANATION_RATIO = -2.0
 """Log-likelihood ratio per thing that an explanation must exceed for a table to be of a kind."""
 
 MIN_NAME_PROBABILITY = 0.5
-"""Probability from which a recognised name names a role."""
+"""Minimum probability at which a recognised name names a role."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +223,7 @@ def place_among(
 
 
 def is_same_table(first: Scene, second: Scene) -> bool:
-    """Say whether two scenes show one table, which may be laid or cleared meanwhile.
+    """Return whether two scenes show one table, which may be laid or cleared meanwhile.
 
     Parameters
     ----------

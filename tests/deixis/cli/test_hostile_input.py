@@ -48,7 +48,7 @@ def safe(*texts: str, lines: bool = True) -> None:
 
 
 def run_bounded(*args: object, **options: Any) -> subprocess.CompletedProcess[str]:
-    """Runs a command as a process that may take so much memory, and must be done in time."""
+    """Runs a command as a process with limits of memory and time."""
     code = (
         f"import resource; resource.setrlimit(resource.RLIMIT_AS, ({ADDRESS_SPACE}, {ADDRESS_SPACE}))\n"
         "from deixis.cli.app import run; run()"

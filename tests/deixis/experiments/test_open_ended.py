@@ -146,7 +146,7 @@ def test_a_damaged_file_is_made_again_and_a_bad_folder_reported(tmp_path: Path) 
     (file,) = tmp_path.iterdir()
     file.write_bytes(file.read_bytes()[:-100])
     assert len(cached_views(tmp_path, "key", build).views) == 1
-    with pytest.raises(CacheError, match=r"views-.*npz: views cannot be kept here"):
+    with pytest.raises(CacheError, match=r"views-.*npz: views cannot be stored here"):
         cached_views(file, "key", build)
 
 
@@ -225,7 +225,7 @@ def test_the_chart_is_as_stored(tmp_path: Path) -> None:
             TaughtAnswer("cup", "cup" if sign == "+" else None, 0.2, 2 + n // 5, 4 + n, 0.5)
             for n, sign in enumerate(right)
         ]
-        made = Course(learner, ("cup", "fork"), tuple(answers), (0, 1), (0.4,), 2, 4 + len(right), End.LEARNT)
+        made = Course(learner, ("cup", "fork"), tuple(answers), (0, 1), (0.4,), 2, 4 + len(right), End.LEARNED)
         return CourseResult(learner, made, 0.5)
 
     taught = course("equations", "+-++-+++++++"), course("nearest", "--+-+-++-+")

@@ -81,7 +81,7 @@ def test_two_modules_cannot_have_one_name() -> None:
     with Blackboard.transient() as board:
         with pytest.raises(ModuleError, match="two modules have the name 'echo'"):
             Runtime(board, [ECHO, ECHO])
-        with pytest.raises(ModuleError, match="cannot be made: No module named 'nowhere'"):
+        with pytest.raises(ModuleError, match="cannot be loaded: No module named 'nowhere'"):
             Runtime(board, [ModuleSpec("nowhere:Echo")])
 
 

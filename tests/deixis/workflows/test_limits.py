@@ -1,4 +1,4 @@
-"""Limits of grounding: time from reading on, memory estimated before it is taken, and what is said of either."""
+"""Limits of grounding: time from reading on, memory estimated before it is taken, and what is said about either."""
 
 from __future__ import annotations
 

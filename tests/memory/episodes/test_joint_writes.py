@@ -30,7 +30,7 @@ def ids(folder: Path) -> list[str]:
 
 
 def killed(write: JointWrite | None) -> None:
-    """End a write as a kill does, which calls no method of the parts any more."""
+    """End a write as a kill does, which calls no further method of the parts."""
     raise SystemExit
 
 

@@ -160,7 +160,7 @@ def test_a_read_only_folder_is_read_and_refuses_writes(
 
 def test_a_place_where_no_folder_can_be_made(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
-    with pytest.raises(MemoryWriteError, match="cannot be made"):
+    with pytest.raises(MemoryWriteError, match="cannot be created"):
         LevelMemory.open(tmp_path / "file" / "m", create=True)
 
 

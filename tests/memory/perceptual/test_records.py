@@ -16,7 +16,7 @@ NOW = datetime(2026, 5, 1, tzinfo=UTC)
 GOOD: dict[str, Any] = {"id": "v1", "category": "mug", "time": NOW, "descriptors": {}}
 
 BAD_VIEWS: list[tuple[dict[str, Any], str]] = [
-    ({"id": ""}, "a view's id must be a text of one or more characters"),
+    ({"id": ""}, "a view's id must be a string of one or more characters"),
     ({"id": 7}, "got 7"),
     ({"category": "\ud800"}, "half a character"),
     ({"category": "x" * 1001}, "too long: 1001 bytes"),

@@ -191,7 +191,7 @@ def test_a_folder_without_permission_is_only_read(tmp_path: Path) -> None:
 
 def test_a_place_where_no_folder_can_be_made(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(MemoryWriteError, match="cannot be made"):
+    with pytest.raises(MemoryWriteError, match="cannot be created"):
         SemanticMemory.open(tmp_path / "link" / "m", create=True)
 
 

@@ -195,8 +195,8 @@ CATALOGUE: list[tuple[Any, str]] = [
     ({}, "'objects' is missing; add the list of the objects"),
     ({"objects": None}, "'objects' must be a list, got null"),
     ({"objects": {}}, "'objects' must be a list, got an object"),
-    ({"object": []}, f"'object' is not a key here, did you mean 'objects'?; the keys are {SCENE_KEYS}"),
-    ({"objects": [], "Frame": "x"}, f"'Frame' is not a key here, did you mean 'frame'?; the keys are {SCENE_KEYS}"),
+    ({"object": []}, f"'object' is not a key here (did you mean 'objects'?); the keys are {SCENE_KEYS}"),
+    ({"objects": [], "Frame": "x"}, f"'Frame' is not a key here (did you mean 'frame'?); the keys are {SCENE_KEYS}"),
     ({"objects": [], "unit": "inch"}, "unknown unit 'inch'; use one of m, cm, mm, px"),
     ({"objects": [], "unit": 1}, "'unit' must be a string, got a number"),
     ({"objects": [], "unit": None}, "'unit' must be a string, got null"),
@@ -209,7 +209,7 @@ CATALOGUE: list[tuple[Any, str]] = [
     (without("id"), "objects[0]: 'id' is missing"),
     (without("min"), "objects[0]: 'min' is missing"),
     (without("max"), "objects[0]: 'max' is missing"),
-    (one(lable="fork"), f"objects[0]: 'lable' is not a key here, did you mean 'label'?; the keys are {KEYS}"),
+    (one(lable="fork"), f"objects[0]: 'lable' is not a key here (did you mean 'label'?); the keys are {KEYS}"),
     (
         one(centre=[0, 0], size=[1, 1]),
         "objects[0]: 'centre' is not a key here; 'size' is not a key here; "

@@ -36,7 +36,7 @@ PART, END, MIDDLE = (
 
 
 MIN_SUPPORTED = 4
-"""Number of boxes on a box from which it is taken as the surface that they stand on."""
+"""Minimum number of boxes on a box at which it is taken as the surface that they stand on."""
 MIN_SUPPORTED_SHARE = 0.6
 """Share of the other boxes that stand on it."""
 

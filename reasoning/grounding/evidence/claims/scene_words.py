@@ -19,7 +19,7 @@ from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 Array = NDArray[np.float64]
 
 LIKELY = 0.5
-"""Probability from which on a word is said of a pair."""
+"""Minimum probability at which a word is said about a pair."""
 
 PASSIVE = frozenset(
     {"around", "ringed_by", "leaned_on_by", "crossed_by", "stacked_under", "faced_by", "pointed_at_by", "less_long"}
@@ -86,7 +86,7 @@ def scene_words(boxes: Array, poses: Poses | None = None, models: RelationModels
     Parameters
     ----------
     boxes
-        Least and greatest corners, shape (n, 2, d).
+        Minimum and maximum corners, shape (n, 2, d).
     poses
         Orientation of the things; None for axes along the sides of the boxes, and no fronts.
     models

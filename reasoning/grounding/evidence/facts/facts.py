@@ -12,7 +12,7 @@ chance:
   facts is estimated from the whole description (:mod:`deixis.reasoning.grounding.evidence.facts.literalness`);
 - a hedge of weight w: the fact holds with probability w, else it is ignored: log(w exp(l) + 1 - w), where l is the
   evidence of the fact. Below one half (*rarely*) the opposite is stated, with weight 1 - w;
-- ``optional``: the fact holds every second time: w is halved.
+- ``optional``: the fact holds half of the time: w is halved.
 """
 
 from __future__ import annotations
@@ -526,7 +526,7 @@ def literal_degree(
     vocabulary: Relations,
     implied: float = 0.5,
 ) -> Array:
-    """Return crisp degrees by the exact relation of each pair : 1, ``implied``, or 0.
+    """Return crisp degrees by the exact relation of each pair: 1, ``implied``, or 0.
 
     Parameters
     ----------

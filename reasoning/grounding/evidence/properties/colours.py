@@ -146,7 +146,7 @@ def colour_terms(seen: NDArray[np.float64], colours: Colours) -> list[Colour | N
 
 
 def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:
-    """Return the colour of each of n things that clearly differs from the described one , None for other things.
+    """Return the colour of each of n things that clearly differs from the described one, None for other things.
 
     For neighbouring colours such as red and orange,
     either word may be used; so p(seen | described) must be at most ``MAX_OTHER_RATIO`` of the greatest density. The

@@ -48,7 +48,7 @@ OTHER_WORDS = 10_000
 """Number of equally likely words for things of no known kind: about the nouns that a speaker uses."""
 
 MAX_HEIGHT_RATIO, HEIGHT_ERROR = 2.0, 0.02
-"""Ratio to the greatest usual height, and metres beyond that, from which a thing is too high for a kind."""
+"""Ratio to the greatest usual height of a kind, and metres beyond that, above which a thing is too high for it."""
 
 MAX_COMPARED, PAIRS_AT_ONCE = 600, 1 << 20
 """Maximum number of things whose sizes are all compared with each other, and the number of pairs held at a time."""

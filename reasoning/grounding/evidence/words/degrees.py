@@ -221,7 +221,7 @@ class WordDegrees:
         return self._found[word]
 
     def held_by_front(self, word: str) -> NDArray[np.bool_]:
-        """Return the pairs of which *in front of* or *behind* holds by the front of the object.
+        """Return the pairs for which *in front of* or *behind* holds by the front of the object.
 
         Parameters
         ----------

@@ -39,7 +39,7 @@ from deixis.reasoning.grounding.matching.problem import Problem
 Array = NDArray[np.float64]
 
 PRIOR_ABSENT, PRIOR_OBJECTS = 0.001, 20.0
-"""Prior share of absent objects, and the number of objects that it counts as."""
+"""Prior share of absent objects, and its weight as a number of objects."""
 
 CERTAINLY_PRESENT = -20.0
 """Log-odds of absence up to which an object is certainly present."""

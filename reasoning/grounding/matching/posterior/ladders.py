@@ -138,7 +138,7 @@ def sampled_marginals(
 def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> tuple[float, float]:
     """Return the log-likelihood ratio in nats of the evidence against chance over all allowed maps, and its error.
 
-    It is the logarithm of the sum over all maps of the exponential of their values, minus the same with the costs of
+    It is the logarithm of the sum over all maps of the exponential of their values, minus that sum with the costs of
     absence alone. The error is estimated from the differences of ladders and from a coarser integration rule.
 
     Parameters

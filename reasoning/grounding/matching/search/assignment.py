@@ -52,7 +52,7 @@ def solve_assignment(gain, column_of, price, profit):  # type: ignore[no-untyped
 
 @njit(cache=True)
 def _take_the_best(gain, column_of, row_of, profit):  # type: ignore[no-untyped-def]
-    """Give every row its best column unless another row has it; return the other rows."""
+    """Assign every row its best column unless another row has it; return the other rows."""
     rows, columns = gain.shape[0], gain.shape[1] - 1
     waiting = np.empty(rows, np.int64)
     count = 0

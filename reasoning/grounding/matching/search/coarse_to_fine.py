@@ -1,4 +1,4 @@
-"""Belief propagation from coarse to fine: messages about groups of things, then about ever smaller groups.
+"""Belief propagation from coarse to fine: messages about groups of things, then about smaller and smaller groups.
 
 A round of dense belief propagation costs the number of facts times the square of the number of things. Things that lie
 near each other have similar rows in the tables of all facts, so that messages about them are similar too. Here the
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
 MIN_COARSE_THINGS = 200
-"""Number of things from which belief propagation goes from coarse to fine."""
+"""Minimum number of things at which belief propagation goes from coarse to fine."""
 
 FIRST_CELLS, KEPT_CELLS = 64, 48
 """Minimum number of cells at the first level, and number of cells that an object keeps before they are divided."""

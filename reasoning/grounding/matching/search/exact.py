@@ -237,7 +237,7 @@ def _open_bound(stack: Stack) -> float:
 
 
 def _grid(problem: Problem) -> float:
-    """Return the coarsest of a few steps of which all numbers are multiples, or 0; values then differ by a step."""
+    """Return the largest of a few steps that divides all numbers, or 0; values then differ by multiples of it."""
     for step in (1.0, 0.5, 0.25, 0.2, 0.1, 0.05):
         parts = (problem.absent, *(row for table in problem.tables for row in table), problem.unary[problem.allowed])
         if all(np.abs(part / step - np.round(part / step)).max(initial=0.0) < 1e-6 for part in parts):

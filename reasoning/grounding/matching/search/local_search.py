@@ -364,7 +364,7 @@ def _reassign_sets(labels, problem, patience, failed, sets, seed):  # type: igno
 
 @njit(cache=True)
 def _without_facts_between(problem):  # type: ignore[no-untyped-def]
-    """Return a random maximal set of objects of which no two share a fact."""
+    """Return a random maximal set of objects, no two of which share a fact."""
     n1 = len(problem.unary)
     order, taken = np.random.permutation(n1), np.zeros(n1, np.bool_)
     chosen, count = np.empty(n1, np.int64), 0

@@ -48,7 +48,7 @@ LAST_SWEEPS = 3  # sweeps without noise after the deadline
 MIN_PROPAGATED_OBJECTS, MAX_ANNEALED_OBJECTS = (
     50,
     400,
-)  # objects from which on, and up to which, there is the one search, and the other
+)  # minimum and maximum number of objects for each of the two searches
 PARALLEL_EFFORT, FOLLOWING_EFFORT = (
     0.8,
     0.4,

@@ -29,27 +29,27 @@ NUMBER_FEATURES = ("plural_of_plural", "plural_of_singular", "singular_of_plural
 """Names of the features of the number of a noun and that of a label."""
 
 ALIKE = 0.75
-"""Ratio of matching letters from which on two words count as spellings of one."""
+"""Minimum ratio of matching letters at which two words count as spellings of one."""
 
 
 NAMED = 0.06
 """Prior probability that an object of an unknown class is of the class that a noun names.
 
-About the share of pairs of objects in a scene that have one class, which is greater in rooms with many chairs and
-smaller on tables.
+It is about the share of pairs of objects in a scene that have the same class, which is greater in rooms with many
+chairs and smaller on tables.
 """
 
 NAMED_WEIGHT = 20.0
 """Number of objects with known classes that count as much as this prior."""
 
 CALLED = 0.85
-"""Fit of a noun and a label from which on the noun names the class."""
+"""Minimum fit of a noun to a label at which the noun names the class."""
 
 ALIKE_SIZES = 0.25
 """Standard deviation of the logarithms of the sides of objects of one class in one scene."""
 
 STRAY = 1e-6
-"""Least density of the sizes of objects, so that a size that no other object has tells little."""
+"""Minimum density of the sizes of objects, so that a size that no other object has carries little information."""
 
 SIZE_RATIOS = (-8.0, 6.0)
 """Range of the feature ``size`` of an object whose class is unknown."""
@@ -221,7 +221,7 @@ class Nouns:
         return (*one_hot, similarity, spelling, head, max(similarity, 0.9 * head, 0.6 * spelling))
 
     def _sizes(self, noun: str, room: Room) -> Array:
-        """Return how well the size of each object fits a noun, shape (n,): 0 if it tells nothing.
+        """Return how well the size of each object fits a noun, shape (n,): 0 if it carries no information.
 
         It is twice the logarithm of a ratio of densities: that of the sizes of the noun's class over that of all sizes
         in the room, each estimated from the objects whose classes are known. What the noun usually measures

@@ -237,7 +237,7 @@ SIDES: dict[str, tuple[int, float]] = {
 MIDDLE = frozenset({"middle", "centre", "center", "central"})
 
 VIVID = 25.0
-"""Chroma in CIELAB from which on the mean colour of an object tells its colour term well."""
+"""Minimum CIELAB chroma at which the mean colour of an object determines its colour term well."""
 
 LIGHTNESS: dict[str, float] = {"dark": -1.0, "light": 1.0, "bright": 1.0, "pale": 1.0}
 

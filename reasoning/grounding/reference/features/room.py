@@ -17,7 +17,7 @@ VIEWERS = 8
 """Number of directions, evenly spaced, in which an unknown viewer may look."""
 
 SURROUNDINGS = 0.5
-"""Share of the extents of a scene from which on an object counts as part of its surroundings, such as a floor."""
+"""Minimum share of the extents of a scene at which an object counts as part of its surroundings, such as a floor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +78,7 @@ class Room:
         ids
             Names of the n objects.
         boxes
-            Least and greatest corners, shape (n, 2, 2) or (n, 2, 3).
+            Minimum and maximum corners, shape (n, 2, 2) or (n, 2, 3).
         labels
             Category of each object, or None.
         colours

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Example:
-    """A query about a room, and the index of the object that it was said of."""
+    """A query about a room, and the index of the object that it was said about."""
 
     query: Query
     room: Room
@@ -128,13 +128,13 @@ def log_probability(model: Model, example: Example) -> Score | None:
 
 
 FIRST_LOG_ODDS = -4.0
-"""Log odds from which a fit of the calibration starts, that a description tells nothing."""
+"""Log odds from which a fit of the calibration starts, that a description carries no information."""
 
 DOUBT_PENALTY = 0.5
 """Penalty in nats for a weight of the calibration that differs by 1 from its start."""
 
 LEAST_WEIGHT = 5e-4
-"""Least magnitude of a weight that is written to a file."""
+"""Minimum magnitude of a weight that is written to a file."""
 
 INITIAL: Mapping[str, float] = {
     "same": 3.0,

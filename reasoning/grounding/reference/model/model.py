@@ -61,7 +61,7 @@ PLACES |= {"middle": "middle"}
 OPPOSITES = {"left": "right", "right": "left", "front": "back", "back": "front", "near": "far", "far": "near"}
 
 MISNAMED = 0.005
-"""Share of descriptions whose noun names none of the objects that it may name, so that any object is meant."""
+"""Share of descriptions whose noun fits none of its candidates, so that any object may be meant."""
 
 UNLISTED = {"wall": Property("position", "wall")}
 """Landmarks that the objects of a scene seldom include, with the property that a relation to them then stands for."""
@@ -70,16 +70,16 @@ COUNTED = frozenset({"proximity", "support", "inside"})
 """Families of relations whose landmarks are counted (*the table with four chairs*)."""
 
 COUNTED_GAP = 0.4
-"""Greatest distance of a counted landmark over the scale of the scene."""
+"""Maximum distance of a counted landmark over the scale of the scene."""
 
 LIKELY = 0.5
-"""Probability from which on an object counts as one of the class that a noun names."""
+"""Minimum probability at which an object counts as one of the class that a noun names."""
 
 SIZE_TOLERANCE = 1.0
 """Sum of the logarithms by which the sides of an object without a label may lie outside the usual ones of a noun."""
 
 DOUBTS = ("always", "words", "rivals", "relations", "viewed", "unseen", "unread", "other_classes")
-"""Features of a description that tell how far its log probabilities can be trusted: a constant, the logarithm of its
+"""Features of a description that show how reliable its log probabilities are: a constant, the logarithm of its
 number of words over 10, that of the number of candidates with the label of the best one, the number of relations, and
 whether it depends on the view, mentions a landmark that the room does not have, is not all understood, and has
 candidates with other labels."""
@@ -183,7 +183,7 @@ class Model:
         return found
 
     def doubts(self, query: Query, room: Room, logs: Array) -> Array:
-        """Return features of a description that tell how far its log probabilities can be trusted.
+        """Return features of a description that show how reliable its log probabilities are.
 
         Parameters
         ----------
@@ -413,7 +413,7 @@ class Model:
         return fit
 
     def _size_fit(self, description: Description, room: Room) -> Array:
-        """Return how well the sizes of objects without a label fit a noun, 0 if they tell nothing, shape (n,)."""
+        """Return how well the sizes of objects without a label fit a noun, 0 without information, shape (n,)."""
         result: Array = self._noun_features(description, room)[-2:][0, :, -1]  # of the class that the noun names
         return result
 
@@ -497,7 +497,7 @@ class Model:
 def calibrated(logs: Array, doubts: Array, weights: Array) -> Array:
     """Return log probabilities as calibrated probabilities.
 
-    They are raised to a power and mixed with equal shares, which stand for descriptions that tell nothing. Both the
+    They are raised to a power and mixed with equal shares, which stand for descriptions without information. Both the
     logarithm of the power and the log odds of the equal shares are linear in the doubts.
 
     Parameters

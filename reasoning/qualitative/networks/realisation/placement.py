@@ -27,7 +27,7 @@ from deixis.reasoning.qualitative.networks.realisation.pair_types import (
     Piece,
 )
 
-Boxes = NDArray[np.float64]  # (n, 2, 2): least and greatest corner, x and y
+Boxes = NDArray[np.float64]  # (n, 2, 2): minimum and maximum corner, x and y
 Equation = dict[int, int]  # factor by coordinate; the sum is zero
 
 POLYGON = 12
@@ -37,7 +37,7 @@ PRECISION = 24
 FEASIBLE = 1e-6
 """Maximum slack of a constraint that counts as met; smaller than any margin."""
 MAX_COORDINATE = 1000.0
-"""Greatest coordinate per box."""
+"""Maximum coordinate per box."""
 COMPACTNESS = 1e-4
 """Cost of one unit of a coordinate (one unit of slack costs 1 or more), so that boxes do not spread without need."""
 

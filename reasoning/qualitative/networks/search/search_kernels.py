@@ -682,7 +682,7 @@ def _decide(algebra, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _alternative(nogood, algebra, memory):  # type: ignore[no-untyped-def]
-    """Return the premise of a stated nogood to decide against, as edge and relation; edge -1 if one is surely false."""
+    """Return the premise of a stated nogood to decide against, as edge and relation; edge -1 if one is false."""
     best, best_score, relation = -1, -1.0, ZERO
     for position in range(memory.begins[nogood], memory.begins[nogood + 1]):
         edge, wanted = memory.premise_edges[position], np.uint64(memory.premise_masks[position])

@@ -3,7 +3,7 @@
 No tractable subclass is known for such calculi, so that every pair is narrowed to an atom. The trail of the closure
 shows which decisions a contradiction rests on; the search backtracks to the last but one of these, where the last is
 excluded (conflict-directed backjumping; Prosser 1993). Pairs involved in contradictions are decided first (Boussemart
-and others 2004), and the search restarts after ever more contradictions.
+and others 2004), and the search restarts after increasing numbers of contradictions.
 """
 
 from __future__ import annotations

@@ -70,10 +70,12 @@ class MemoryName(StrEnum):
 @episodes_app.command("add")
 def add(
     words: Annotated[list[str], typer.Argument(metavar="SUBJECT PREDICATE [OBJECT]", help="The statement.")],
-    start: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it starts; unknown by default.")] = None,
-    finish: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it finishes.")] = None,
+    start: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Time at which it starts; unknown by default.")
+    ] = None,
+    finish: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time at which it finishes.")] = None,
     certainty: Annotated[float, typer.Option(metavar="P", help="Probability that it is true.")] = 1.0,
-    origin: Annotated[OriginName, typer.Option(help="How it became known.")] = OriginName.SAID,
+    origin: Annotated[OriginName, typer.Option(help="Way in which it became known.")] = OriginName.SAID,
     by: By = "user",
     memory: MemoryDir = None,
     as_json: AsJson = False,
@@ -103,7 +105,7 @@ def add(
 @episodes_app.command("import")
 def import_(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A file of fluents (.fluents.json).")],
-    origin: Annotated[OriginName, typer.Option(help="How they became known.")] = OriginName.SAID,
+    origin: Annotated[OriginName, typer.Option(help="Way in which they became known.")] = OriginName.SAID,
     name: Annotated[str | None, typer.Option(metavar="NAME", help="Keep them as an experience of this name.")] = None,
     by: By = "user",
     memory: MemoryDir = None,
@@ -129,7 +131,9 @@ def import_(
 @episodes_app.command("finish")
 def finish_(
     ids: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Fluents.")] = None,
-    at: Annotated[float | None, typer.Option(metavar="SECONDS", help="When they finish; default: now.")] = None,
+    at: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Time at which they finish; default: now.")
+    ] = None,
     pattern: Triple = (ANY, ANY, ANY),
     by: By = "user",
     memory: MemoryDir = None,
@@ -151,8 +155,8 @@ def finish_(
 def update(
     ids: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Fluents.")] = None,
     certainty: Annotated[float | None, typer.Option(metavar="P", help="Probability that they are true.")] = None,
-    start: Annotated[float | None, typer.Option(metavar="SECONDS", help="When they start.")] = None,
-    finish: Annotated[float | None, typer.Option(metavar="SECONDS", help="When they finish.")] = None,
+    start: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time at which they start.")] = None,
+    finish: Annotated[float | None, typer.Option(metavar="SECONDS", help="Time at which they finish.")] = None,
     pattern: Triple = (ANY, ANY, ANY),
     window: Window = None,
     by: By = "user",
@@ -263,7 +267,9 @@ def export(
 def record(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the experience.")],
     stop: Annotated[bool, typer.Option("--stop", help="Finish the recording instead of starting it.")] = False,
-    at: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it starts or stops; default: now.")] = None,
+    at: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Time at which it starts or stops; default: now.")
+    ] = None,
     by: By = "user",
     memory: MemoryDir = None,
     as_json: AsJson = False,

@@ -15,18 +15,27 @@ from deixis.cli.progress import progress_bar
 def unlearn(
     lesson: Annotated[
         str | None,
-        typer.Option(metavar="ID", help="What one lesson taught.", autocompletion=complete_lessons),
+        typer.Option(metavar="ID", help="Take back what one lesson taught.", autocompletion=complete_lessons),
     ] = None,
-    sentence: Annotated[str | None, typer.Option(metavar="TEXT", help="What lessons in these words taught.")] = None,
+    sentence: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Take back what lessons with this text taught.")
+    ] = None,
     label: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="What 'teach' gave this name.", autocompletion=complete_categories),
+        typer.Option(
+            metavar="NAME", help="Take back views that 'teach' gave this name.", autocompletion=complete_categories
+        ),
     ] = None,
-    view: Annotated[str | None, typer.Option(metavar="ID", help="What 'teach' said of one view.")] = None,
-    table: Annotated[str | None, typer.Option(metavar="SCENE", help="What was taught with this scene.")] = None,
-    teacher: Annotated[str | None, typer.Option(metavar="NAME", help="What this person taught.")] = None,
+    view: Annotated[
+        str | None, typer.Option(metavar="ID", help="Take back what 'teach' stated about one view.")
+    ] = None,
+    table: Annotated[
+        str | None, typer.Option(metavar="SCENE", help="Take back what was taught with this scene.")
+    ] = None,
+    teacher: Annotated[str | None, typer.Option(metavar="NAME", help="Take back what this person taught.")] = None,
     day: Annotated[
-        str | None, typer.Option(metavar="DATE", help="What was taught on a day: 2026-11-23, today or yesterday.")
+        str | None,
+        typer.Option(metavar="DATE", help="Take back what was taught on a day: 2026-11-23, today or yesterday."),
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Print what would be removed; change nothing.")] = False,
     memory: MemoryDir = None,

@@ -12,8 +12,10 @@ from deixis.cli.progress import time_bar
 
 def lint(
     script: Script,
-    select: Annotated[str, typer.Option(metavar="CODES", help="Report only these: F, or N001,N003.")] = "",
-    ignore: Annotated[str, typer.Option(metavar="CODES", help="Leave these out.")] = "",
+    select: Annotated[
+        str, typer.Option(metavar="CODES", help="Report only warnings with these codes: F, or N001,N003.")
+    ] = "",
+    ignore: Annotated[str, typer.Option(metavar="CODES", help="Omit warnings with these codes.")] = "",
     time_limit: TimeLimit = 5.0,
     as_json: AsJson = False,
 ) -> None:

@@ -23,7 +23,7 @@ class ReadFormat(StrEnum):
 def read(
     text: Annotated[str, typer.Argument(metavar="TEXT", help="An English text (.txt), or - for standard input.")],
     format: Annotated[ReadFormat, typer.Option("--format", help="Format of the output.")] = ReadFormat.TEXT,
-    strict: Annotated[bool, typer.Option("--strict", help="Refuse a text that is not understood whole.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Refuse a text that is not understood completely.")] = False,
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:

@@ -1,4 +1,4 @@
-"""The commands ``deixis activity ground``, ``learn``, ``recognise`` and ``predict``: told and learned activities."""
+"""The commands ``deixis activity ground``, ``learn``, ``recognise`` and ``predict``."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def solve(
     closure: Annotated[bool, typer.Option("--closure", help="Print the closed network.")] = False,
     scenario: Annotated[bool, typer.Option("--scenario", help="Print one solution.")] = False,
     explain: Annotated[
-        tuple[int, int] | None, typer.Option(metavar="I J", help="Print why I and J are related as they are.")
+        tuple[int, int] | None, typer.Option(metavar="I J", help="Print a derivation of the relation of I and J.")
     ] = None,
     verdict: Annotated[bool, typer.Option("--verdict", help="Print only the verdict, not the reasons.")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the network.")] = None,

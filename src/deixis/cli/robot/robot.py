@@ -1,4 +1,4 @@
-"""The command ``deixis robot run``: a robot that sees, is shown and told, and says what it found, while it happens."""
+"""The command ``deixis robot run``: a robot that sees, learns from people, and reports what it finds as it happens."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ robot_app = typer.Typer(help="Run the robot on one memory.", rich_markup_mode=No
 
 @robot_app.callback()
 def _robot() -> None:
-    """Run a robot that sees, is shown and told, and learns."""
+    """Run a robot that sees a table, learns from people, and checks the next table."""
 
 
 @robot_app.command("run")
@@ -48,7 +48,7 @@ def run(
         ),
     ] = "simulator",
     layout: Annotated[
-        str | None, typer.Option(metavar="SCRIPT", help="How the simulated table is laid; default: a shipped one.")
+        str | None, typer.Option(metavar="SCRIPT", help="Layout of the simulated table; default: a shipped one.")
     ] = None,
     seed: Annotated[
         int | None, typer.Option(metavar="N", min=0, help="Seed of the simulated story; default: 0.")
@@ -66,7 +66,8 @@ def run(
     intrinsics: Annotated[Path | None, typer.Option(metavar="FILE", help="Camera of depth images (.json).")] = None,
     grows: Annotated[bool, typer.Option("--grows", help="Wait for further clouds in the folder.")] = False,
     words: Annotated[
-        Path | None, typer.Option("--say", metavar="FILE", help="What persons say (.said.jsonl), besides the story's.")
+        Path | None,
+        typer.Option("--say", metavar="FILE", help="Utterances of persons (.said.jsonl), besides those of the story."),
     ] = None,
     live: Annotated[bool, typer.Option("--live", help="Play the story at its own speed, as a camera does.")] = False,
     stay: Annotated[bool, typer.Option("--stay", help="Listen after the story until the input ends.")] = False,

@@ -15,7 +15,7 @@ def point(
     skeleton: Annotated[str, typer.Argument(metavar="SKELETON", help="Joints over time (.skeleton.jsonl).")],
     scene: SceneFile,
     said: Annotated[
-        Path | None, typer.Option("--said", metavar="FILE", help="What was said, a line of JSON each (.said.jsonl).")
+        Path | None, typer.Option("--said", metavar="FILE", help="Utterances, one line of JSON each (.said.jsonl).")
     ] = None,
     sure: Annotated[float, typer.Option(metavar="P", help="Minimum probability of a decided thing.")] = 0.95,
     memory: Annotated[

@@ -40,7 +40,9 @@ def simulate(
     mesh_unit: Annotated[str, typer.Option(metavar="UNIT", help="Unit of the meshes: m, cm or mm.")] = "m",
     cloth: Annotated[bool, typer.Option("--cloth", help="Put a white cloth on the table.")] = False,
     camera_height: Annotated[float, typer.Option(metavar="METRES", help="Height of the camera above the table.")] = 0.7,
-    camera_back: Annotated[float, typer.Option(metavar="METRES", help="From the table's edge to the camera.")] = 0.0,
+    camera_back: Annotated[
+        float, typer.Option(metavar="METRES", help="Distance from the table's edge to the camera.")
+    ] = 0.0,
     azimuth: Annotated[float, typer.Option(metavar="DEGREES", help="Angle of the camera around the table.")] = 0.0,
     intrinsics: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json); default: a Kinect.")

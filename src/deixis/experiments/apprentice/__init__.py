@@ -1,1 +1,1 @@
-"""The experiment of the apprentice: a robot is shown things and told layouts, and then checks further tables."""
+"""The experiment of the apprentice: a robot learns things and layouts from a teacher, and checks further tables."""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Scene
 
 LAYOUTS = ("formal_dinner", "script2", "informal", "breakfast", "tea", "childs_place")
-"""Layouts of the tables; script2 is the formal dinner with three more glasses, by another hand."""
+"""Layouts of the tables; script2 is the formal dinner with three more glasses, in other words."""
 
 SHOWN = ("dinner_plate", "dinner_fork", "dinner_knife", "napkin")
 """Categories that are taught by pointing."""
@@ -81,7 +81,7 @@ class ApprenticePlan:
 
 @dataclass(frozen=True)
 class LessonScore:
-    """Score of a first table: new things, at which the teacher did not point, and what was learned of them.
+    """Score of a first table: new things, at which the teacher did not point, and what was learned about them.
 
     ``singled_out`` counts the new things that the words single out if the table is seen perfectly (its true boxes,
     without names), and those of them that the robot learned right; ``learned`` counts the new things that it learned,
@@ -253,7 +253,7 @@ def answer_questions(robot: Robot, truth: Mapping[str, str]) -> int:
 
 
 def lesson_score(robot: Robot, lesson: Taught) -> LessonScore:
-    """Score a lesson by what the robot knows of its table in the end.
+    """Score a lesson by what the robot knows about its table in the end.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
-"""Score what the robot said of tables against the truth, by stated rules.
+"""Score what the robot said about tables against the truth, by stated rules.
 
 A detected thing is a true thing if most of its points are of that thing and the two share at least half of their points
 (intersection over union). A true thing is named right if it was detected and has its name without a number; extra
 things are not scored. A mistake is found if its kind and the true things that it is about are the same; one that is
-reported otherwise counts as missed, and the report as false. Everything that is said counts, and where the robot names
-no layout it has found nothing.
+reported otherwise counts as missed, and the report as false. All reported mistakes count. Where the robot names no
+layout, it has found no mistake.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from deixis.robot.looking import Fault, Look
 from deixis.workflows.scenes.simulate import Simulation
 
 MIN_SHARED = 0.5
-"""Intersection over union of points from which a detected thing is a true thing."""
+"""Minimum intersection over union of points at which a detected thing is a true thing."""
 
 
 _Said = tuple[MistakeKind, frozenset[str]]
@@ -110,7 +110,7 @@ def true_things(look: Simulation, scene: Scene) -> dict[str, str]:
 
 
 def score(look: Look, table: Tampered, layout: str, things: Mapping[str, str], taught: Iterable[str]) -> TableScore:
-    """Score what the robot says of a table.
+    """Score what the robot says about a table.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ def write_story(plan: ApprenticePlan, folder: Path) -> tuple[Frame, ...]:
     plan
         The plan, of which the seed, the noise and the layouts are used.
     folder
-        The folder, which is made if need be.
+        The folder, which is made if it does not exist.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Tables with known mistakes: a layout is laid by the simulator, and then some of its things are tampered with.
 
-Only things that support no other thing are missing, displaced, swapped or turned, so that each mistake is one. A
+Only things that support no other thing are missing, displaced, swapped or turned, so that each counts as one mistake. A
 displaced thing clearly violates a fact of its layout by its new place; a turned one violates none by its box's place;
 two swapped things are of different kinds, fit in each other's place, and clearly violate a fact there; an extra
 thing stands free. Nothing lies across other things by mistake.
@@ -25,10 +25,10 @@ from deixis.workflows.layouts.lay_table import LaidScript, lay_script
 Array = NDArray[np.float64]
 
 GAP = 0.012
-"""Least distance in metres between a tampered thing and others."""
+"""Minimum distance in metres between a tampered thing and others."""
 
 MIN_DISPLACEMENT = 0.10
-"""Least distance in metres by which a thing is displaced."""
+"""Minimum distance in metres by which a thing is displaced."""
 
 CLEAR = 0.03
 """Distance in metres by which a displaced thing could be moved on without a violated fact holding again."""
@@ -40,10 +40,10 @@ QUARTER = (np.deg2rad(60.0), np.deg2rad(120.0))
 """Angles between which a thing is turned."""
 
 MAX_SHIFT = 0.08
-"""Greatest distance in metres by which a turned thing is moved, so that it fits."""
+"""Maximum distance in metres by which a turned thing is moved, so that it fits."""
 
 LONG = 2.0
-"""Ratio of length to width from which a thing can be turned by mistake."""
+"""Minimum ratio of length to width at which a thing can be turned by mistake."""
 
 TRIES = 60
 """Number of places tried for a mistake before another one is drawn."""

@@ -190,7 +190,7 @@ def cached_views(folder: Path | None, key: str, make: Callable[[], DescribedView
         np.savez(unfinished, allow_pickle=False, **arrays)
         unfinished.replace(file)
     except OSError as error:
-        raise CacheError(f"{folder}: views cannot be kept here ({error.strerror}); choose another folder") from error
+        raise CacheError(f"{folder}: views cannot be stored here ({error.strerror}); choose another folder") from error
     return data
 
 

@@ -69,7 +69,7 @@ def _course(taught: CourseResult) -> dict[str, Any]:
 NAME = 21
 MEASURES: dict[str, Callable[[CourseResult], float]] = {
     "QCI": lambda one: one.course.iterations,
-    "ALC": lambda one: one.course.learnt,
+    "ALC": lambda one: one.course.learned,
     "AIC": lambda one: one.course.instances,
     "GCA": lambda one: one.course.global_accuracy,
     "APA": lambda one: one.course.protocol_accuracy,
@@ -107,7 +107,7 @@ def _head(found: OpenEnded) -> Iterator[str]:
         yield from wrap(repr(describer), 116, initial_indent="  ", subsequent_indent="    ")
     yield from (f"  skipped: {note}" for note in found.skipped)
     yield ""
-    yield "Means and standard deviations over orders. QCI: question and correction iterations; ALC: categories learnt;"
+    yield "Means and standard deviations over orders. QCI: question and correction iterations; ALC: categories learned;"
     yield "AIC: instances stored per category; GCA: share of right answers; APA: mean accuracy in the teacher's window;"
     yield "AUROC: how well the learner's doubt separates views of the next category from those of known categories;"
     yield "new: final share right on things never taught; least: the least GCA; all: orders that ended with all."
@@ -121,7 +121,7 @@ def _set(found: OpenEnded, one: Findings) -> Iterator[str]:
         courses = one.of(name)
         cells = "".join(f" {spread([measure(one) for one in courses]):>11}" for measure in MEASURES.values())
         least = min(one.course.global_accuracy for one in courses)
-        whole = sum(one.course.end is End.LEARNT for one in courses)
+        whole = sum(one.course.end is End.LEARNED for one in courses)
         yield f"{name:<{NAME}}{cells} {least:>5.2f} {whole:>4}/{len(courses)}"
     yield from _single_views(f"Single views of the {one.name}", one.nearest)
     if one.kept_back:

@@ -23,7 +23,7 @@ SETTING = "place_setting"
 """Kind of the simulator that is a whole table, not a thing."""
 
 MAX_EXTENT = 0.5
-"""Greatest extent of a thing on a table, in metres."""
+"""Maximum extent of a thing on a table, in metres."""
 
 Y_UP = "sweethome3d"
 """Source whose y axis points up; z points up in all others."""

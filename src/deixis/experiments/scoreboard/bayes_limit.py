@@ -3,8 +3,8 @@
 The likelihood is the generator's own. Of m facts a known number k is wrong, every choice of k equally likely, and the
 word of a wrong fact is drawn evenly from the relations next to the true one. So the possible maps are those with
 exactly k wrong facts, each by a neighbouring relation; all of them are listed and weighted by their likelihood. The
-best decision maximises the expected number of objects given their own thing: the assignment with the largest sum of
-marginals.
+best decision maximises the expected number of objects that are assigned their own things: it is the assignment with the
+largest sum of marginals.
 
 A decision that also uses how the generator draws pairs (half of them among near neighbours) can do better, since
 unstated facts carry information too. Both limits are given.

@@ -68,7 +68,7 @@ def groups(description: RelationGraph) -> list[NDArray[np.int64]]:
 def right_up_to_interchangeability(assignment: Map, truth: Map, groups: Sequence[NDArray[np.int64]]) -> float:
     """Return the share of correct objects when the things of a group may be exchanged among its objects.
 
-    Each thing counts once, and each missing object of a group counts for one that is left out.
+    Each thing counts once, and each missing object of a group counts as one that is left out.
 
     Parameters
     ----------

@@ -73,8 +73,8 @@ class Bin:
 class Reliability:
     """The reliability of ``count`` matches.
 
-    ``error`` is the expected calibration error: the mean distance of the share right from the mean probability over the
-    bins, weighted by their counts (Naeini, Cooper, Hauskrecht 2015).
+    ``error`` is the expected calibration error: the mean distance between the share of right answers and the mean
+    probability over the bins, weighted by their counts (Naeini, Cooper, Hauskrecht 2015).
     """
 
     bins: tuple[Bin, ...]

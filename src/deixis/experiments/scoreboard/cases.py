@@ -65,7 +65,7 @@ class Case:
     setting: Setting
     unit: int
     description: RelationGraph
-    boxes: NDArray[np.float64]  # (n2, 2, 2): least and greatest corner
+    boxes: NDArray[np.float64]  # (n2, 2, 2): minimum and maximum corner
     things: tuple[str, ...]  # (n2,): the names of the boxes, which distinguish equal boxes in any order
     truth: NDArray[np.int64]  # (n1,): the thing of each object, UNMATCHED if it is missing
     metric: bool = True  # True if boxes are in metres

@@ -23,7 +23,7 @@ COLOURS = (
 )  # fmt: skip
 MARKERS = "osD^vPX<>*hd"
 MIN_VALUE_SHOWN = -0.25
-"""Least relative log-likelihood shown."""
+"""Minimum relative log-likelihood shown."""
 
 SHADES = ("#1f4e79", "#6d93b8", "#b9cbdc", "#d9d2c3", "#8a7f5c", "#4f7d4c")
 DODGE = 1.008

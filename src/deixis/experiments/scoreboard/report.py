@@ -133,7 +133,7 @@ def _head(found: Scoreboard) -> Iterator[str]:
     yield f"Tables of each setting, by objects: {counts}."
     facts_each = ", ".join(f"{value:g}" for value in plan.facts_each)
     off = ", ".join(f"{100 * value:.0f}" for value in plan.off) + " %"
-    yield (f"Settings: {facts_each} facts per object; {off} of them off; no changes, or a tenth missing and extra.")
+    yield (f"Settings: {facts_each} facts per object; {off} of them wrong; no changes, or a tenth missing and extra.")
     if plan.photographs is not None:
         units = len({score.unit for score in found.main.scores if score.setting.objects == PHOTOGRAPHS})
         yield f"{units} photographs, each in {plan.orders} node order{'s' if plan.orders > 1 else ''}."

@@ -30,7 +30,8 @@ from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.implications import Implications
 
 MAX_IMPLIED = 1000
-"""Maximum number of implied statements of a layout that are stored when it is learned; of more, none is."""
+"""Maximum number of implied statements of a layout that are stored when it is learned; a layout with more stores
+none."""
 
 MAX_ON_DEMAND = 250_000
 """Maximum number of triples about one layout that a query adds."""

@@ -386,7 +386,7 @@ def _list(after: After, name: GraphName, head: Node) -> Iterator[str]:
 def origin(engines: Mapping[str, str] = ENGINES) -> Iterator[ox.Triple]:
     """Yield the provenance of the inferred graph: its sources and its engines.
 
-    It has no time, so that the same facts always give the same graph.
+    It holds no times, so that the same facts always give the same graph.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """The concept of a layout over all its tables: what always holds, what usually holds, what is optional, how far apart.
 
-A told fact that held on every table stays firm. One that did not gets its share of the tables as its weight. Of what
-no lesson stated, the relations that held on every table are added, hedged, and the distances that hardly varied, as
-claims. Only counts are used, so the order of the tables does not matter.
+A stated fact that held on every table stays firm. Any other stated fact gets its share of the tables as its weight. Of
+what no lesson stated, the relations that held on every table are added, hedged, and the distances that hardly varied,
+as claims. Only counts are used, so the order of the tables does not matter.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations
 
 MIN_TABLES = 2
-"""Number of tables from which counts say more than the words."""
+"""Minimum number of tables at which counts outweigh the words."""
 
 DISTANCE_RATIO = 1.3
 """Ratio to the mean up to which a distance counts as the same."""
 
 MIN_DISTANCE = 0.01
-"""Least distance in metres that is stated; things that nearly touch have none."""
+"""Minimum distance in metres that is stated; things that nearly touch have none."""
 
 
 @dataclass(frozen=True, slots=True)

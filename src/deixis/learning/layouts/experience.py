@@ -25,14 +25,16 @@ COMPARED = ("left", "top", "on")
 """Wide words whose frequencies are kept for each ordered pair of roles; their inverses follow."""
 
 ELONGATED = 1.7
-"""Ratio of the sides of a thing from which it has a direction."""
+"""Minimum ratio of the sides of a thing at which it has a direction."""
 
 SIZE_ERROR = 0.01
 """Error of a size, in metres."""
 
 COVERED = 0.5
-"""Share of a thing in plan above another thing from which its height is measured from its lower end, and not from the
-table, since the sides of a thing may be hidden by its top."""
+"""Minimum share of a thing in plan above another thing at which its height is measured from its lower end.
+
+Below this share, it is measured from the table, since the sides of a thing may be hidden by its top.
+"""
 
 
 @dataclass(frozen=True)

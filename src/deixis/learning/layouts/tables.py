@@ -1,7 +1,7 @@
 """Tables on which layouts were taught, as the memory keeps them, and which thing each role is.
 
-A lesson keeps what its grounding decided. What was settled later, by an answer, a pointing or another table, is kept
-with the view that was taught then. So a lesson or a teaching that is taken back takes its counts with it.
+A lesson keeps what its grounding decided. What was settled later, by an answer, a pointing gesture or another table, is
+kept with the view that was taught then. So a lesson or a teaching that is taken back takes its counts with it.
 """
 
 from __future__ import annotations

@@ -24,10 +24,10 @@ from deixis.reasoning.grounding.evidence.shortlisted import evidence_of_shortlis
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 
 ODD_SCALE = 10.0
-"""Ratio of seen to usual lengths from which the unit of a scene is doubted; units differ by 10 or more."""
+"""Minimum ratio of seen to usual lengths at which the unit of a scene is doubted; units differ by 10 or more."""
 
 HUGE = 8.0
-"""Median length of the things of a scene, in metres, from which its unit is doubted although no kind is known."""
+"""Minimum median length of the things of a scene, in metres, at which its unit is doubted although no kind is known."""
 
 SMALL_THING = 0.2
 """Length in metres that is expected of things of no known kind when a unit is proposed."""
@@ -190,7 +190,7 @@ def scene_labels(scene: Scene) -> dict[str, Label | None]:
 
 
 def named_by_candidates(thing: PerceivedObject) -> bool:
-    """Say whether the candidates of a thing are used instead of its label.
+    """Return whether the candidates of a thing are used instead of its label.
 
     Parameters
     ----------

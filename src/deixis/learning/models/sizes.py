@@ -27,13 +27,13 @@ from deixis.reasoning.grounding.fitting.size_statistics import BUCKET, SCALE, Di
 from deixis.reasoning.grounding.fitting.sizes import SizePrior, pool, size_of, usual_prior
 
 FEWEST = 3
-"""Minimum number of views that override a usual size. With fewer, one wrong view moves the median at will."""
+"""Minimum number of views that override a usual size. With fewer, one wrong view can move the median freely."""
 
 SURE = 0.9
 """Minimum confidence of a label or match that counts; a median tolerates the tenth that is wrong."""
 
 SETTLED = 64
-"""Minimum number of views of all kinds together from which on the common prior is rounded.
+"""Minimum number of views of all kinds together at which the common prior is rounded.
 
 Without rounding, every lesson would change the model of every kind without a usual size by a negligible amount.
 """

@@ -1,1 +1,1 @@
-"""Views of things, all that persons and lessons said of them, and the recogniser that is made from them."""
+"""Views of things, all that persons and lessons said about them, and the recogniser that is made from them."""

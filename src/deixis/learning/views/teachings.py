@@ -165,7 +165,7 @@ def each_changed(
     stored
         Teachings by the ids of views.
     change
-        Function that returns a teaching as it shall be, or None to leave it out.
+        Function that returns the changed teaching, or None to leave it out.
 
     Returns
     -------

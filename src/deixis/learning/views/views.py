@@ -232,7 +232,7 @@ def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metada
         del needed[COLOUR]
     descriptors = {descriptor.name: descriptor.describe(cloud) for descriptor in needed}
     if not all(map(len, descriptors.values())):
-        raise CloudError("the thing has too few points to say what it looks like; perceive it from nearer")
+        raise CloudError("the thing has too few points to describe its appearance; perceive it from closer")
     points = np.ascontiguousarray(cloud.points[cloud.finite], dtype=np.float32)
     id = hashlib.sha256(points.tobytes()).hexdigest()[:16]
     return View(id, category, time, descriptors, points, dict(metadata))

@@ -19,7 +19,7 @@ MAX_LISTED = 12
 """Maximum number of names, and of pivotal facts, to list one by one."""
 
 MIN_PROBABILITY_LEAD = 0.02
-"""Lead in probability from which another thing is reported as likelier; above the error of sampling."""
+"""Minimum lead in probability at which another thing is reported as likelier; above the error of sampling."""
 
 
 FRAMES = {"object": "by the thing's own front or axis", "table": "across the middle of the scene"}

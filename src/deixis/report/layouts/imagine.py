@@ -59,7 +59,7 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
         yield from (f"    {fact.source or 'stated'}: {fact}" for fact in waived.because)
         yield from (f"    {sized}" for sized in waived.sizes)
     for a, b in table.overlapping:
-        yield f"Overlap: {a} and {b} could not be laid apart."
+        yield f"Overlap: {a} and {b} could not be placed apart."
     for fact in table.named_otherwise:
         yield f"Note: {fact}{_source(fact)} holds, but the exact word for these two overlapping boxes is another one."
     for fact in table.not_shown:

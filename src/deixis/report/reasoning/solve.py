@@ -79,7 +79,7 @@ def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
         for thing, ((west, south), (east, north)) in _plain(solved):
             yield f"    box {thing}: x from {west:.12g} to {east:.12g}, y from {south:.12g} to {north:.12g}"
     for each in solved.contributions:
-        yield f"    {each.name}: {_count(each.pairs, 'pair')} narrowed, {_count(each.atoms, 'atom')} taken"
+        yield f"    {each.name}: {_count(each.pairs, 'pair')} narrowed, {_count(each.atoms, 'atom')} removed"
     if solved.conflict:
         kind = "" if solved.minimal else " (not proved minimal: time limit reached before all were tried)"
         yield f"These cannot all hold{kind}:"

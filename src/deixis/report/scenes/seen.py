@@ -136,7 +136,7 @@ MAX_NAMES = 3
 """Maximum number of candidates in a line."""
 
 MIN_LISTED = 0.05
-"""Probability from which a candidate is listed."""
+"""Minimum probability at which a candidate is listed."""
 
 
 def recognised_lines(found: Recognised, why: bool = False) -> list[str]:

@@ -54,7 +54,7 @@ NOT_FOUND = "I found none of these things on the table, so I learned nothing."
 """Answer to a description of which the robot sees no object."""
 
 NOT_SEEN = "I have not seen a table yet."
-"""Answer to what is said of a table before the first one lay still."""
+"""Answer to what is said about a table before the first one lay still."""
 
 MAX_UNSEEN = 20
 """Maximum number of names that wait until their things have been looked at."""

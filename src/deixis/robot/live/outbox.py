@@ -98,7 +98,7 @@ class Outbox:
         Raises
         ------
         MemoryWriteError
-            If the disk is full; what is not yet written goes on waiting.
+            If the disk is full; what is not yet written keeps waiting.
         """
         if not self._waiting:
             return ()

@@ -422,8 +422,8 @@ class _Writer:
     def _look(self) -> None:
         """Detect all resting things on the table, correct the tracked things by them, and write them as a scene.
 
-        The tracker segments only what changed; a look at the whole table, as at one that is seen for the first time, is
-        what the robot learns from and compares with.
+        The tracker segments only what changed. The robot learns from a segmentation of the whole table, as of one that
+        is seen for the first time, and compares others with it.
         """
         self._undone, self._looked_at = self._look, self._situation.at
         file = self._folder / f"{self._board.new_id('table')}.scene.json"
@@ -610,8 +610,8 @@ class _Writer:
     def _announced_label(self, announced: _Announced) -> PointedLabel:
         """Return what was announced with the thing that came to rest nearest in time, or why no thing gets the name.
 
-        What came between earlier words and the next ones is left to the earlier words, unless the person says what she
-        has just laid.
+        A thing that came between earlier words and the next ones belongs to the earlier words, unless the person says
+        what she has just laid.
         """
         utterance, name = announced.utterance, announced.name
         label = PointedLabel(utterance, name, probability=utterance.confidence)

@@ -68,7 +68,7 @@ ENDS = frozenset(
 """Words at which a noun phrase ends."""
 
 SAME_NOUN = 0.5
-"""Similarity of a noun to a label from which on the noun may name the thing."""
+"""Minimum similarity of a noun to a label at which the noun may name the thing."""
 
 LINKS = frozenset(["is", "are", "was", "were", "looks", "look", "seems", "seem", "isn't", "aren't"])
 

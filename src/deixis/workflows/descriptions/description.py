@@ -22,7 +22,7 @@ SURROUNDINGS = frozenset(
         "building",
     }
 )
-"""Nouns for the whole scene: a landmark that tells nothing."""
+"""Nouns for the whole scene: a landmark without information."""
 
 LEVELS = {"floor": "low", "ground": "low", "ceiling": "high"}
 """Surfaces of a room with the height of what is near them."""
@@ -49,7 +49,7 @@ GROUPS = frozenset(
         "sheet",
     }
 )
-"""Nouns for several objects, whose kind the complement with *of* tells."""
+"""Nouns for several objects, whose kind the complement with *of* gives."""
 
 PARTS = frozenset(
     {
@@ -74,7 +74,7 @@ PARTS = frozenset(
         "rear",
     }
 )
-"""Nouns for a part of the object that the complement with *of* tells."""
+"""Nouns for a part of the object that the complement with *of* names."""
 
 PLACES_AMONG = frozenset({"middle", "center", "centre", "front", "back", "rear", "top", "bottom", "left", "right"})
 """Nouns of PARTS that choose from a group."""
@@ -96,7 +96,7 @@ EMPTY = frozenset(
         "target",
     }
 )
-"""Nouns that say nothing of the kind."""
+"""Nouns that say nothing about the kind."""
 
 ANYTHING = frozenset({"thing", "object", "item"})
 """Nouns that every object fits; the other ones of EMPTY stand for a noun said before."""
@@ -143,14 +143,14 @@ ORDER_ENDS = {"left": "right", "right": "left", "top": "bottom", "bottom": "top"
 Item = TypeVar("Item")
 
 MAX_DEPTH = 6
-"""Maximum depth of phrases within phrases; what lies deeper tells next to nothing about the object."""
+"""Maximum depth of phrases within phrases; deeper phrases carry almost no information about the object."""
 
 
 def query_of(sentences: Sequence[Sentence]) -> Query:
     """Return the query of the sentences that describe one object.
 
     The first noun of the text names the object, unless a later sentence picks another one (*there is a shelf between
-    two doors; it is the door on the left*): the first one is then what *it* stands for. What is said of *it*, *this
+    two doors; it is the door on the left*): the first one is then what *it* stands for. What is said about *it*, *this
     one*, or of the same noun belongs to the object; a clause about something else that mentions it is a relation of it.
 
     Parameters
@@ -432,7 +432,7 @@ def _ranked(properties: Sequence[Property]) -> tuple[Property, ...]:
 
 
 def _denied(description: Description) -> tuple[tuple[Property, ...], tuple[Relation, ...]]:
-    """Return what *not the one next to the door* tells; nothing if it denies several parts, of which one may hold."""
+    """Return what *not the one next to the door* states; nothing if it denies several parts, of which one may hold."""
     if len(description.properties) + len(description.relations) != 1:
         return (), ()
     properties = tuple(replace(one, positive=not one.positive) for one in description.properties)
@@ -553,7 +553,7 @@ def _surface(relation: str, noun: str, positive: bool) -> list[Property]:
 
 
 def _on_surface(surface: Description, positive: bool) -> list[Relation]:
-    """Return what is said of a surface as relations of what is on it: *the shoes on the floor by the door*."""
+    """Return what is said about a surface as relations of what is on it: *the shoes on the floor by the door*."""
     return [one for one in surface.relations if one.positive and not one.inverted] if positive else []
 
 
@@ -591,7 +591,7 @@ def _viewers(sentence: Sentence) -> Iterator[Viewer]:
 
 
 def _viewer(viewpoint: Viewpoint) -> Viewer | None:
-    """Return the viewer of a viewpoint; None for one that tells no direction."""
+    """Return the viewer of a viewpoint; None for one that gives no direction."""
     for phrase in (viewpoint.own, viewpoint.at):
         if phrase is not None and (person := _person(phrase)) is not None:
             return Viewer("person", Description(""), person=person)

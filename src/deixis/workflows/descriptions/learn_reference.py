@@ -37,7 +37,7 @@ ITERATIONS = 40
 """Maximum number of iterations of the fit."""
 
 CHANGED = 0.02
-"""Least change of a weight for which its word is listed as learned."""
+"""Minimum change of a weight for which its word is listed as learned."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

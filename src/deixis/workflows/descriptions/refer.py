@@ -37,7 +37,7 @@ MAX_QUESTIONS = 20
 """Maximum number of questions about one object."""
 
 MIN_LISTED = 1e-3
-"""Least probability of a listed alternative."""
+"""Minimum probability of a listed alternative."""
 
 
 def refer(
@@ -62,7 +62,7 @@ def refer(
     oracle
         Id of the object that is meant, which answers the questions in place of ``ask``, for experiments.
     until
-        Probability from which on no more questions are asked, above 0 and at most 0.95. Fewer questions leave more
+        Probability at which no more questions are asked, above 0 and at most 0.95. Fewer questions leave more
         answers wrong; an answer below 0.95 stays undecided.
     model
         Model with other weights than the shipped ones
@@ -104,7 +104,8 @@ def refer(
     if oracle is not None:
         if oracle not in seen.ids:
             raise DescriptionError(
-                f"{seen.file}: there is no object '{oracle}' that could answer; give an id of the scene"
+                f"{seen.file}: `oracle` must be an object of the scene, got '{oracle}'; "
+                f"there are: {', '.join(seen.ids)}"
             )
         ask = _oracle(oracle)
     if not seen.objects:

@@ -2,8 +2,8 @@
 
 A sentence becomes one fluent for each thing that is an example of its adjective: subject is the thing, predicate
 ``calledAs`` or ``notCalledAs``, object the word with the measures of the thing, all with the id of the sentence as the
-event of their source. Attributes are computed from these fluents alone, so that a memory without a sentence is what it
-would be had that sentence never been said.
+event of their source. Attributes are computed from these fluents alone, so that after a sentence is removed, the memory
+is as if the sentence had never been said.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def remember_sentence(board: Blackboard, text: str, scene: Scene, target: str, b
     text
         Sentence such as *the blick one*.
     scene
-        The scene that it was said of.
+        The scene that it was said about.
     target
         Id of the thing that was meant.
     by

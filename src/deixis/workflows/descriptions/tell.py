@@ -1,4 +1,4 @@
-"""Tell a layout or a scene in English, in few words, such that reading the text gives the same facts."""
+"""Tell a layout or a scene in English, in few words, so that reading the text gives the same facts."""
 
 from __future__ import annotations
 

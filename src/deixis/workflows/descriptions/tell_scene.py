@@ -1,4 +1,4 @@
-"""Tell a scene: choose what to say of each object, and check that the text finds the objects again."""
+"""Tell a scene: choose what to say about each object, and check that the text finds the objects again."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ MAX_CHECKED = 40
 """Maximum number of objects of a scene whose text is grounded again."""
 
 MAX_MORE = 5
-"""Maximum number of times that further relations are said of objects that the text does not find."""
+"""Maximum number of times that further relations are said about objects that the text does not find."""
 
 MIN_TIME = 0.5
 """Seconds without which the text is not changed and grounded again."""
@@ -151,7 +151,7 @@ def _designations(scene: Scene, attributes: Attributes, order: Sequence[int]) ->
 
 
 def _descriptions(attributes: Attributes, order: Sequence[int], least: int) -> dict[int, Description]:
-    """Return what is said of each object: relations to earlier objects that fit no later object."""
+    """Return what is said about each object: relations to earlier objects that fit no later object."""
     descriptions = {}
     for place, i in enumerate(order):
         plain = replace(single_out(i, order[place:], attributes, ()), colour=None, size=None)
@@ -187,7 +187,7 @@ def _sentences(
 
 
 MAX_OFF_DIRECTION = np.pi / 6
-"""Maximum angle in radians between the direction of a thing and the word that is said of it."""
+"""Maximum angle in radians between the direction of a thing and the word that is said about it."""
 
 
 def _directions(scene: Scene, i: int) -> Iterator[Claim]:

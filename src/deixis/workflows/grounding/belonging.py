@@ -30,10 +30,10 @@ Box = NDArray[np.float64]
 def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
     """Estimate where the missing and misplaced objects of a checked table belong.
 
-    Two objects that changed places belong in each other's. Every other place is taken from an example table that
+    Two objects that changed places belong in each other's place. Every other place is taken from an example table that
     satisfies the layout: the object keeps its distances there to the objects that the layout relates it to, as far as
-    these are in place or their own places are known, and the median over them is taken; only those that it lies on or
-    in count, if there are any. A place moves aside if it overlaps that of an object from which it is apart in the
+    these are in place or their own places are known, and the median over these objects is taken. If it lies on or in
+    some of them, only those count. A place moves aside if it overlaps that of an object from which it is apart in the
     example.
 
     Parameters

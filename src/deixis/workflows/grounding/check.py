@@ -1,4 +1,4 @@
-"""A table is compared with a layout: what is missing, misplaced, miscoloured and extra, and which claims fail."""
+"""Check a table against a layout: what is missing, misplaced, miscoloured and extra, and which claims fail."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Check(Answer):
-    """A table against a layout: the verdicts, and the same as a SHACL validation report, made when it is asked for.
+    """Comparison of a table with a layout: the verdicts, and a SHACL validation report, made on first use.
 
     Examples
     --------

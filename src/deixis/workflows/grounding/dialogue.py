@@ -418,11 +418,11 @@ def checked_truth(data: Any, where: str, situation: Situation) -> dict[str, str 
         if id is not None and id not in situation.things:
             near = nearest(id, situation.things)
             raise OracleError(
-                f"{where}: '{name}' is said to be '{id}', which is not in the scene"
+                f"{where}: '{name}' has the id '{id}', which is not in the scene"
                 + (f"; did you mean '{near}'?" if near else "")
             )
     ids = [id for id in data.values() if id is not None]
     twice = next((id for id in ids if ids.count(id) > 1), None)
     if twice is not None:
-        raise OracleError(f"{where}: two objects are said to be '{twice}'")
+        raise OracleError(f"{where}: two objects have the id '{twice}'")
     return data

@@ -1,7 +1,7 @@
 """Ground a script in a scene: one request with every option, and the one function that answers it.
 
 Python (:func:`deixis.ground`, ``Session.ground``) and the command line (``deixis ground``) build the same
-:class:`GroundingRequest`, so that both can do the same and give the same answer.
+:class:`GroundingRequest`, so that both have the same options and give the same answer.
 """
 
 from __future__ import annotations
@@ -60,11 +60,11 @@ TEXT_SIZES_SHARE = 0.3
 the size of its kind (*toy train*, *camp stove*), and two such nouns would make the scene another one."""
 
 SIDES_HELD = {ViewpointName.STATED: 1, ViewpointName.QUARTER: 3, ViewpointName.UNKNOWN: 7}
-"""Times as many things as memory has to be for: the square of it is the number of sides looked from at once."""
+"""Factor on the number of things in the estimate of memory; its square is the number of viewpoints searched at once."""
 
 MIN_SHORTLISTED, PAIRS_PER_SECOND = 10, 4e5
-"""Things for each object from which a shortlist of them is worth its while, and pairs of things that all of grounding
-deals with in a second, about."""
+"""Minimum number of things per object at which a shortlist pays off, and approximate number of pairs of things that
+grounding processes in a second."""
 
 Stage = Callable[[str], AbstractContextManager[None]]
 """Function that returns a context for one stage of the work, from the name of the stage."""
@@ -436,7 +436,7 @@ def _contradiction(request: GroundingRequest) -> tuple[str, ...]:
 
 
 def _answer_with_questions(request: GroundingRequest, ask: Ask, scene: Scene, time_limit: float) -> Grounding:
-    """Ground a script in a scene, by asking what would tell the likeliest groundings apart."""
+    """Ground a script in a scene, with questions that distinguish the likeliest groundings."""
     from deixis.reasoning.grounding.questions.inquiry import Inquiry
     from deixis.reasoning.grounding.questions.refinement import Hold, refine
     from deixis.reasoning.grounding.questions.situation import Situation

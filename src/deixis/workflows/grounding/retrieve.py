@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.types import LayoutConcept
 
 MIN_LABEL_CONFIDENCE = 0.5
-"""A label of less confidence does not tell a thing's kind."""
+"""Minimum confidence of a label that determines the kind of a thing."""
 
 TIME_LIMIT = 60.0
 

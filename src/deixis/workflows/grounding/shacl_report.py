@@ -71,7 +71,7 @@ def satisfied_relations(
 ) -> Iterator[tuple[str, Relation, str]]:
     """Yield each relation that a fact of the layout names and that holds between the things in its roles.
 
-    A word that only a model decides holds from a degree of one half on, by the shipped models. A direction that the
+    A word that only a model decides holds at a degree of at least one half by the shipped models. A direction that the
     scene does not show holds as it is stated, so that it is not reported.
 
     Parameters

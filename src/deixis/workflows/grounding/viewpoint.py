@@ -20,17 +20,17 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.options import DECIDED, Select
 
 MIN_VIEWPOINT_PROBABILITY, MAX_VIEWPOINTS = 0.005, 8
-"""Least probability of a viewpoint that contributes to the probabilities of matches, and the most such viewpoints."""
+"""Minimum probability of a viewpoint that contributes to the probabilities of matches, and the most such viewpoints."""
 
 MIN_CONCENTRATION = 0.5
-"""Least mean resultant length of the angles of one viewpoint: that of an even spread over 217 degrees."""
+"""Minimum mean resultant length of the angles of one viewpoint: that of an even spread over 217 degrees."""
 
 _NO_VIEWPOINT_NOTE = "the scene was taken as it is: nothing indicates from which side it was described"
 
 
 @dataclass(frozen=True, slots=True)
 class ViewpointScene:
-    """A scene as seen from the side from which a script speaks; ``viewpoints`` None where nothing tells a side."""
+    """A scene as seen from the side from which a script speaks; ``viewpoints`` is None if nothing indicates a side."""
 
     scene: Scene
     viewpoints: Viewpoints | None = None
@@ -54,7 +54,7 @@ def recover_scene(
     """Return the scene as seen from the side from which a script most probably speaks.
 
     A scene is mirrored where that explains the script better. Where no fact compares two things that were found, or
-    most of the circle fits as well, the script tells no side, and the scene stays as it is.
+    most of the circle fits as well, the script indicates no side, and the scene stays as it is.
 
     Parameters
     ----------
@@ -118,7 +118,8 @@ def ground_from_sides(
 ) -> Grounding:
     """Ground as seen from the likeliest side, with the probabilities of matches over all plausible sides.
 
-    Where the script tells no side, the map is that of the scene as it stands, with the probabilities from all around.
+    Where the script indicates no side, the map is that of the scene as it stands, with the probabilities from all
+    around.
 
     Parameters
     ----------

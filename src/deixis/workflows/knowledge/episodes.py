@@ -100,7 +100,7 @@ class _Learner(Protocol):
         ...
 
     def remembers(self) -> bool:
-        """Say whether there is a semantic memory."""
+        """Return whether there is a semantic memory."""
         ...
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
@@ -108,7 +108,7 @@ class _Learner(Protocol):
         ...
 
     def has_views(self) -> bool:
-        """Say whether there is a perceptual memory."""
+        """Return whether there is a perceptual memory."""
         ...
 
     def categories(self) -> dict[str, int]:
@@ -687,7 +687,7 @@ def _learned(
 
 
 def _marked(board: _Episodes, experience: Experience, by: str, lessons: Sequence[Lesson]) -> Part:
-    """Return what the blackboard says of the lesson of an experience, as a part of its write."""
+    """Return what the blackboard says about the lesson of an experience, as a part of its write."""
     mark = _mark(board, experience, lessons[0].id, by)
     return board.part(mark, by=by) if isinstance(board, Blackboard) else board.part(mark)
 

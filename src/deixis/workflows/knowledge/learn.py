@@ -1,4 +1,4 @@
-"""A script and a scene become a lesson: the layout, and what its objects look like."""
+"""Learn a lesson from a script and a scene: the layout, and the look of its objects."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 Recording = Callable[["Sequence[Lesson]"], "Part | None"]
-"""A function that returns what the blackboard says of new lessons: the part of the episodes in the write of these."""
+"""Function that returns the part of the blackboard in the write of new lessons."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -125,7 +125,7 @@ def learn(
     events
         Ids in the episodes of what the teacher said.
     episodes
-        Function that returns what the blackboard says of the lessons, which is written in the same step.
+        Function that returns what the blackboard says about the lessons, which is written in the same step.
 
     Returns
     -------

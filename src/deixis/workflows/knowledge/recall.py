@@ -31,7 +31,7 @@ AT, IS_A, SAID, POINTED_AT = "at", "isA", "said", "pointedAt"
 
 EXPECTED, SAME_AS, CONTRADICTED = "expected", "sameAs", "contradicted"
 """Predicates of objects that a person said are there: the words, the thing that it turned out to be, and the reason why
-it is not expected any more."""
+it is no longer expected."""
 
 MOMENT = 1e-3
 """Seconds between *before* or *after* a moment and the moment itself."""
@@ -225,7 +225,7 @@ class _Remembering:
         self.names: dict[str, list[tuple[float, str]]] = defaultdict(list)
         self.things: set[str] = set()
         self.predicates: set[str] = set()
-        self.said_of: dict[str, set[str]] = defaultdict(set)  # words that were said of each thing
+        self.said_of: dict[str, set[str]] = defaultdict(set)  # words that were said about each thing
         self.expected: dict[str, str] = {}  # persons by the objects that they said are there
         relations = {relation.name for relation in ontology.relations.values()}
         related: set[str] = set()

@@ -92,7 +92,7 @@ def script_without(record: Provenance, layout: LayoutConcept, sentence: str, ont
     Parameters
     ----------
     record
-        What is known of the lesson.
+        What is known about the lesson.
     layout
         The layout that it taught.
     sentence
@@ -171,7 +171,7 @@ def lesson_of_script(
     script
         The script.
     record
-        What is known of the earlier lesson.
+        What is known about the earlier lesson.
     engine
         Engine that grounded it.
     events

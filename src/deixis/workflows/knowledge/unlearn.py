@@ -213,8 +213,8 @@ def _shown(board: Blackboard, before: Mapping[str, Teachings], after: Mapping[st
 def _episodes(board: Blackboard, lessons: Sequence[str], chosen: _Chosen, others: Set[str]) -> Iterator[Change]:
     """Yield what changes on the blackboard.
 
-    The fluents go that a person stated and that are taken back, and those of the same events and lessons. Experiences
-    stay, and do not name the lessons any more.
+    These are the fluents that a person stated and that are taken back, and those of the same events and lessons.
+    Experiences stay, and no longer name the lessons.
     """
     known = board.holding()
     yield from _shortened(known, chosen, board.moment)

@@ -1,4 +1,4 @@
-"""Arrange an imagined table: move its things until claims and graded words hold, and everything that held still does.
+"""Arrange an imagined table: move its things until claims and graded words hold, without breaking what already holds.
 
 A table of orders (:mod:`deixis.reasoning.entailment.realisation`) satisfies the facts that order edges of boxes. Claims
 and graded words are models of the boxes, so that a search satisfies them: it moves a thing, with what lies on it, to a
@@ -36,7 +36,7 @@ SEARCH_SECONDS = 6.0
 """Maximum time of the search in seconds."""
 
 MOVES_OF_OTHERS = 0.2
-"""Share of the moves that are of any thing, instead of one that an unmet statement is about."""
+"""Share of the moves that move an arbitrary thing, instead of one that an unmet statement is about."""
 
 COMFORT = 0.65
 """Degree above which a statement is not improved further: the border is one half."""
@@ -49,7 +49,7 @@ TOGETHER = frozenset({"on", "under", "exactly_on", "exactly_under", "inside", "c
 class Arrangement:
     """Statements that a search satisfies by moving the things of a table.
 
-    ``kept`` are the edges of the graph that hold and must go on to hold, ``graded`` the edges of graded words.
+    ``kept`` are the edges of the graph that hold and must keep holding, ``graded`` the edges of graded words.
     """
 
     graph: RelationGraph

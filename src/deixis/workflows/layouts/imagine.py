@@ -77,7 +77,8 @@ class ImaginedTable:
 class NoTable:
     """Firm facts that no table satisfies; with ``sizes``, none on which these things have their usual sizes.
 
-    ``minimal`` where without any one of them there is such a table. ``reason``: in words, where they are few.
+    ``minimal`` is True if there is such a table without any one of them. ``reason`` is the reason in words if they are
+    few.
     """
 
     facts: tuple[Fact, ...]
@@ -231,7 +232,7 @@ LONG_SIDE_TO_VIEWER = ("device", "appliance", "furniture")
 """Kinds whose long side faces the viewer, as a keyboard, a microwave or a sofa stands."""
 
 LEAST_WIDE = 0.25
-"""Typical length in metres from which such a thing lies across; a telephone or a computer mouse points away."""
+"""Minimum typical length in metres at which such a thing lies across; a telephone or a computer mouse points away."""
 
 
 def lying_across(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:

@@ -46,7 +46,7 @@ class Inferred:
 class Inference(Answer):
     """Facts that follow from a script without being stated, or the conflict in it.
 
-    Where the time limit struck, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
+    If the time limit was reached, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
     if further facts may follow.
 
     Examples
@@ -232,7 +232,7 @@ def _implied(script: Script, time_limit: float) -> tuple[tuple[ClaimFact, ...], 
 
 
 def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> bool | None:
-    """Say whether the facts of a script can all hold, without a reason.
+    """Return whether the facts of a script can all hold, without a reason.
 
     Parameters
     ----------
@@ -340,5 +340,5 @@ def require_names(inference: Inference, fact: Fact, name: str) -> None:
     for thing in (fact.subject, fact.object):
         if thing not in nodes:
             hint = nearest(thing, nodes)
-            suggestion = f"; did you mean '{hint}'?" if hint else ""
-            raise UnknownTermError(f"{name}: the script has no object '{thing}'{suggestion}")
+            advice = f"did you mean '{hint}'?" if hint else f"there are: {', '.join(nodes)}"
+            raise UnknownTermError(f"{name}: the script has no object '{thing}'; {advice}")

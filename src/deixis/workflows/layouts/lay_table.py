@@ -1,4 +1,4 @@
-"""Lays a script with simulated tableware: boxes that satisfy it, filled with things of its kinds."""
+"""Lay a script with simulated tableware: boxes that satisfy it, filled with things of its kinds."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 def is_table(thing: Sized, ontology: Ontology) -> bool:
-    """Say whether a thing is of a kind of table.
+    """Return whether a thing is of a kind of table.
 
     Parameters
     ----------
@@ -186,8 +186,8 @@ def lay_script(
 ) -> LaidScript:
     """Lay a table that satisfies every firm fact of a script, with things of their kinds, varied from the seed.
 
-    Everything is turned a little off its axis, unless a fact would no longer hold. What is a table is the table's top
-    itself, and everything is on it, unless the script has it elsewhere.
+    Everything is turned a little off its axis, unless a fact would no longer hold. An object that is a table is the
+    table top itself, and everything stands on it unless the script places it elsewhere.
 
     Parameters
     ----------
@@ -268,7 +268,7 @@ class _Plan:
 def _plan_boxes(
     script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], seed: int, time_limit: float
 ) -> _Plan:
-    """Boxes that satisfy the script, of the size of the things that will fill them."""
+    """Return boxes that satisfy the script, of the size of the things that will fill them."""
     ontology = script.ontology
     objects = sized_objects(script, graph)
     lying = lying_across(graph, objects, ontology.kinds)
@@ -389,7 +389,7 @@ def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:
     spoken_of = [i for i, found in enumerate(plan.tables) if found]
     if len(spoken_of) > 1:
         names = " and ".join(plan.graph.nodes[i] for i in spoken_of[:2])
-        raise SimulationError(f"{names} are tables, and one table is simulated; leave one of them out")
+        raise SimulationError(f"{names} are tables, and only one table can be simulated; leave one of them out")
     if not spoken_of:
         return top_under(laid.things, colour=colour)
     low, high = plan.boxes[spoken_of[0]]

@@ -203,7 +203,7 @@ def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
 
 
 def is_script_file(layout: str | Path) -> bool:
-    """Say whether a layout is given as a file rather than by its name.
+    """Return whether a layout is given as a file rather than by its name.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ def read(
     text
         The text itself, instead of a file.
     strict
-        True to refuse a text that is not understood whole.
+        True to refuse a text that is not understood completely.
     time_limit
         Time limit in seconds.
 

@@ -1,4 +1,4 @@
-"""Ground told activities in sequences of fluents, learn them from examples, and recognise them."""
+"""Ground described activities in sequences of fluents, learn them from examples, and recognise them."""
 
 from __future__ import annotations
 

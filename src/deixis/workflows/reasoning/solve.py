@@ -56,7 +56,7 @@ class SolvedNetwork(Answer):
 
     ``seconds`` is the time that the verdict took. ``shown`` are the networks that were asked for, the closure or the
     scenario, one for each calculus. ``boxes`` satisfy everything that several calculi, or one with distances, say:
-    least and greatest corner by thing, distances in units of the reference length.
+    minimum and maximum corner by thing, distances in units of the reference length.
 
     Examples
     --------

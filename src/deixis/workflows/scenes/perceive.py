@@ -1,4 +1,4 @@
-"""From a cloud to a scene with the points of each thing, in memory; and a scene written, clouds and all."""
+"""Turn a cloud into a scene with the points of each thing, and write scenes with their clouds."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def perceive(
     viewpoint
         Name of the side from which the camera looks.
     settings
-        Which table to choose, and what is known of the camera's frame.
+        Which table to choose, and what is known about the camera's frame.
     stage
         Called with the name of each of ``STAGES`` that begins.
 

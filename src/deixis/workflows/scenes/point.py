@@ -34,7 +34,7 @@ MIN_LEAD = 0.25
 """Time by which a gesture must overlap the words more than others that point at something else, in seconds."""
 
 MIN_SIZE_FIT = 0.02
-"""Least weight of a thing whose size is unusual for what a name means."""
+"""Minimum weight of a thing whose size is unusual for what a name means."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +131,7 @@ def point(
     said
         Utterances, or a file of them (``.said.jsonl``), on the clock of the skeletons.
     sure
-        Probability from which on a thing is decided.
+        Minimum probability of a decided thing.
 
     Returns
     -------
@@ -235,7 +235,7 @@ def pointed_label(
     scene
         The things.
     sure
-        Probability from which on a thing is decided.
+        Minimum probability of a decided thing.
 
     Returns
     -------

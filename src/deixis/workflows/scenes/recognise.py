@@ -1,4 +1,4 @@
-"""The things of a scene are named by what was taught."""
+"""Name the things of a scene by the taught categories."""
 
 from __future__ import annotations
 

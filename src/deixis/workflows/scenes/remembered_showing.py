@@ -10,7 +10,7 @@ from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Sourc
 from deixis.workflows.scenes.point import Shown
 
 MIN_CERTAINTY = 1e-6
-"""Least certainty of a fluent, which must be above 0."""
+"""Minimum certainty of a fluent, which must be above 0."""
 
 
 def remember_showing(board: Blackboard, shown: Shown, since: float = 0.0, by: str = "pointing") -> int:

@@ -1,4 +1,4 @@
-"""A laid table seen by a simulated depth camera, with the truth about it."""
+"""Record a laid table with a simulated depth camera, with the ground truth."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from deixis.workflows.layouts.lay_table import LaidScript, lay_script, require_s
 
 @dataclass(frozen=True, slots=True)
 class CameraSetup:
-    """From where a table is looked at, and how well; lengths in metres, the azimuth in radians.
+    """Position and noise of the camera that looks at a table; lengths in metres, the azimuth in radians.
 
-    Raises SimulationError for a place where no camera can be, before a table is laid in vain.
+    Raises SimulationError for an impossible position, before the table is laid.
     """
 
     height: float = HEIGHT
@@ -39,7 +39,7 @@ class CameraSetup:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Simulation(Answer):
-    """A look at a laid table. ``cloud`` is in the camera's frame, ``truth`` in the table's.
+    """Recording of a laid table. ``cloud`` is in the camera's frame, ``truth`` in the table's.
 
     A point's label is 0 for the table, k for the thing ``o{k}`` of the truth, -1 where nothing was measured.
 

@@ -1,4 +1,4 @@
-"""A thing of a scene is shown as a view of a category."""
+"""Teach a thing of a scene as a view of a category."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def teach(
     event: str | None = None,
     episodes: Part | None = None,
 ) -> Taught:
-    """Keep the look of a thing in a scene as a view of a category, which is created if it is new.
+    """Store the appearance of a thing in a scene as a view of a category, which is created if it is new.
 
     A word that differs from a known category only by case means that category. Teaching the view again under another
     word corrects it; it then belongs to no lesson.
@@ -53,7 +53,7 @@ def teach(
         Event in which the teacher showed it (:func:`deixis.memory.episodes.fluents.episode.event_of`); None where the
         episodes do not have it.
     episodes
-        What the blackboard says of it, which is written in the same step; None for nothing.
+        What the blackboard says about it, which is written in the same step; None for nothing.
 
     Returns
     -------

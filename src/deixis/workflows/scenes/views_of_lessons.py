@@ -37,7 +37,7 @@ def keep_lessons(
     named: Mapping[str, Sequence[View]] = MappingProxyType({}),
     episodes: Part | None = None,
 ) -> tuple[Taught, ...]:
-    """Write lessons, the views that each teaches, and what the episodes say of them, in one step over all stores.
+    """Write lessons, the views that each teaches, and what the episodes say about them, in one step over all stores.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def _write(
 ) -> None:
     """Write a change of views; ``categories`` are those of the views of lessons afterwards, None for no lesson.
 
-    What the episodes say of it needs a semantic store, which decides the write.
+    What the episodes say about it needs a semantic store, which decides the write.
     """
     from deixis.memory.semantic.rdf.links import relinking
 

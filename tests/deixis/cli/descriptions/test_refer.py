@@ -115,7 +115,7 @@ def test_words_learned_from_descriptions_are_used(tmp_path: Path) -> None:
         (["--batch", "missing.jsonl"], "missing.jsonl: there is no such file"),
         (["", STUDY], "got a blank text"),
         (["the chair", "missing.json"], "missing.json: there is no such file"),
-        (["the chair", STUDY, "--oracle", "o99"], "there is no object 'o99'"),
+        (["the chair", STUDY, "--oracle", "o99"], "`oracle` must be an object of the scene, got 'o99'"),
         (["the chair", STUDY, "--until", "0.99"], "`until` must be above 0 and at most 0.95, got 0.99"),
         (["the chair", STUDY, "--models", STUDY], "there must be an object 'weights'"),
     ],

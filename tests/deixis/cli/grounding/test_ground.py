@@ -170,7 +170,7 @@ def test_an_unwritable_place(tmp_path: Path) -> None:
     file = write(tmp_path / "file", "")
     code, _, err = deixis("ground", SCRIPT1, SCENE, "--plot", file / "found.png")
     assert code == 2
-    assert "the folder of the picture cannot be made" in err
+    assert "the folder of the picture cannot be created" in err
 
 
 @pytest.mark.parametrize("engine", ["exact", "scalable"])

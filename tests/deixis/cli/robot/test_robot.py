@@ -41,7 +41,7 @@ def test_the_robot_needs_no_standard_input(
 def test_a_story_that_cannot_be_written_is_refused_at_first(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "out").touch()
     code, out, err = deixis("robot", "run", "--from", folder, "--memory", tmp_path / "m", "--story", tmp_path / "out")
-    assert (code, out) == (2, "") and "story.png: the folder of the picture cannot be made" in err
+    assert (code, out) == (2, "") and "story.png: the folder of the picture cannot be created" in err
     assert not (tmp_path / "m").exists()
 
 
@@ -150,4 +150,4 @@ def test_ctrl_c_ends_the_robot_and_all_its_processes_quietly(
 def test_an_unwritable_story_of_apprentice_is_refused_at_first(tmp_path: Path) -> None:
     (tmp_path / "out").touch()
     code, out, err = deixis("experiment", "apprentice", "--tables", 10**9, "--story", tmp_path / "out")
-    assert (code, out) == (2, "") and "the folder of the picture cannot be made" in err
+    assert (code, out) == (2, "") and "the folder of the picture cannot be created" in err

@@ -100,8 +100,8 @@ def test_an_empty_scene_has_no_pairs(tmp_path: Path) -> None:
     ("options", "message"),
     [
         (("--calculus", "rcc"), "no calculus 'rcc' relates boxes; did you mean 'rcc8'?"),
-        (("--of", "frok"), "nothing here is called 'frok'; did you mean 'fork'?"),
-        (("--of", "fork", "--of", "spoon"), "nothing here is called 'spoon'"),
+        (("--of", "frok"), "there is no object 'frok'; did you mean 'fork'?"),
+        (("--of", "fork", "--of", "spoon"), "there is no object 'spoon'; there are: "),
         (("--of", "a", "--of", "b", "--of", "c"), "--of may be given once"),
         (("--matrix", "--of", "fork"), "--matrix excludes --of"),
         (("--matrix", "--words"), "--matrix excludes --of"),

@@ -137,7 +137,7 @@ def test_a_label_of_the_scene_is_a_known_noun(study: deixis.Scene) -> None:
 
 
 def test_an_unknown_oracle_is_refused(study: deixis.Scene) -> None:
-    with pytest.raises(DescriptionError, match="there is no object 'o99'"):
+    with pytest.raises(DescriptionError, match="`oracle` must be an object of the scene, got 'o99'; there are: o1, o2"):
         deixis.refer("the chair", study, oracle="o99")
 
 

@@ -126,7 +126,7 @@ def test_the_oracle_knows_what_is_not_there() -> None:
         ([], "a truth file must be a JSON object"),
         ({"cup": 1}, "a truth file must be a JSON object"),
         ({"cup": "o22"}, "which is not in the scene; did you mean 'o2'?"),
-        ({"cup": "o1", "mug": "o1"}, "two objects are said to be 'o1'"),
+        ({"cup": "o1", "mug": "o1"}, "two objects have the id 'o1'"),
     ],
 )
 def test_a_truth_file_that_is_none_is_refused(tmp_path: Path, data: object, message: str) -> None:

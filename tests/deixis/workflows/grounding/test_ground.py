@@ -139,7 +139,7 @@ def test_who_does_not_answer_is_asked_once() -> None:
         ({"time_limit": "soon"}, SettingError, "time_limit"),
         ({"time_limit": None}, SettingError, "time_limit"),
         ({"engine": "exakt"}, package.DeixisError, "there is no engine 'exakt'"),
-        ({"ask": {"fork": "o99"}}, OracleError, "'fork' is said to be 'o99', which is not in the scene"),
+        ({"ask": {"fork": "o99"}}, OracleError, "'fork' has the id 'o99', which is not in the scene"),
         ({"ask": lambda question, situation: "perhaps"}, OracleError, "must be one of its answers, got 'perhaps'"),
     ],
 )

@@ -240,7 +240,7 @@ def test_a_layout_without_a_table_is_an_answer_of_no(tmp_path: Path) -> None:
         (("--random", 301), "1 to 300 things"),
         (("--random", -1), "1 to 300 things"),
         (("--random", 1, "--noise", "nan"), "`noise` must be from 0"),
-        (("--random", 1, "--missing", "2"), "`missing` from 0 to 1, got 2"),
+        (("--random", 1, "--missing", "2"), "`missing` must be from 0 to 1, got 2"),
         (("--random", 1, "--camera-height", "-1"), "above the table"),
         (("--random", 1, "--azimuth", "inf"), "azimuth"),
         (("--random", 1, "-o", "cloud.txt"), "must end in .pcd or .ply"),

@@ -91,7 +91,7 @@ def test_an_answer_that_is_too_large_is_refused_whole(filled: SemanticMemory) ->
 
 
 def test_rows_without_values_count_for_the_size_of_an_answer(filled: SemanticMemory) -> None:
-    """Rows that are ``{}`` as text, but have a place for each variable when they are read."""
+    """Use rows that are ``{}`` as text, but have a place for each variable when they are read."""
     unbound = " ".join(f"?v{k}" for k in range(400))
     query = f"SELECT {unbound} {{ ?a <urn:p> ?b }}"
     assert len(filled.query(query + " LIMIT 300", memory_limit=16 * MIB).rows) == 300
@@ -265,7 +265,7 @@ def test_nothing_is_left_behind(memory: SemanticMemory) -> None:
 
 def test_prepared_queries_are_refused(filled: SemanticMemory) -> None:
     """rdflib would evaluate them in this process, without any limit."""
-    with pytest.raises(QueryError, match="must be a text, got a prepared query"):
+    with pytest.raises(QueryError, match="must be a string, got a prepared query"):
         filled.dataset().query(rdflib.plugins.sparql.prepareQuery("ASK { ?s ?p ?o }"))
 
 

@@ -14,7 +14,7 @@ def view(*rows: float, thing: str | None = None) -> ViewFeatures:
     return ViewFeatures({"spin_images": np.array(rows, np.float32)[:, None]}, thing)
 
 
-def learnt(**settings: object) -> InstanceBased:
+def learned(**settings: object) -> InstanceBased:
     learner = InstanceBased(root=False, **settings)  # type: ignore[arg-type]
     for place in (0.0, 2.0):
         learner.learn("tight", view(place))  # ICD 2
@@ -24,19 +24,19 @@ def learnt(**settings: object) -> InstanceBased:
 
 
 def test_scores_are_equation_4() -> None:
-    found = learnt(settings=PAPER).predict(view(5.0))  # D_C 3 and 5
+    found = learned(settings=PAPER).predict(view(5.0))  # D_C 3 and 5
     assert dict(found.ranked) == pytest.approx({"tight": -3 / 2, "loose": -5 / 8})
     assert found.best == "loose" and found.unknown == pytest.approx(5 / 8)
 
 
 def test_by_distance_uses_equation_4_only_for_unknown() -> None:
-    found = learnt(settings=PAPER, by_distance=True).predict(view(5.0))
+    found = learned(settings=PAPER, by_distance=True).predict(view(5.0))
     assert found.best == "tight" and dict(found.ranked) == pytest.approx({"tight": -3.0, "loose": -5.0})
     assert found.unknown == pytest.approx(5 / 8)
 
 
 def test_shrinkage_draws_the_divisors_together() -> None:
-    found = learnt(settings=RecognitionSettings(shrinkage=2.0)).predict(
+    found = learned(settings=RecognitionSettings(shrinkage=2.0)).predict(
         view(5.0)
     )  # median ICD 5, so (2 * 2 + 2 * 5) / 4 and (2 * 8 + 2 * 5) / 4
     assert dict(found.ranked) == pytest.approx({"tight": -3 / 3.5, "loose": -5 / 6.5})

@@ -49,7 +49,7 @@ def course(
 
 def test_a_perfect_learner_needs_one_question_per_category() -> None:
     found, _ = course([])
-    assert found.end is End.LEARNT and found.learnt == 3
+    assert found.end is End.LEARNED and found.learned == 3
     assert found.iterations == 1 + 2 + 3 and found.introduced == (0, 1, 3)
     assert found.stored == 3 and found.instances == 1.0
     assert found.global_accuracy == found.protocol_accuracy == 1.0
@@ -57,7 +57,7 @@ def test_a_perfect_learner_needs_one_question_per_category() -> None:
 
 def test_a_learner_that_is_never_right_exhausts_patience() -> None:
     found, learner = course([False] * 500)
-    assert found.end is End.FRUITLESS and found.learnt == 0 and found.iterations == 100
+    assert found.end is End.FRUITLESS and found.learned == 0 and found.iterations == 100
     assert found.stored == 1 + 100 == learner.stored and found.global_accuracy == 0.0
 
 
@@ -82,7 +82,7 @@ def test_each_category_is_asked_for_once_in_every_round() -> None:
 
 def test_a_course_ends_where_a_category_has_no_view_left() -> None:
     found, _ = course([False] * 50, categories=1, views=5)
-    assert found.end is End.NO_VIEWS and found.iterations == 4 and found.learnt == 0
+    assert found.end is End.NO_VIEWS and found.iterations == 4 and found.learned == 0
 
 
 def test_a_category_is_introduced_by_as_many_views_as_asked_for() -> None:

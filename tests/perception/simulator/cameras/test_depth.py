@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -149,8 +151,15 @@ def test_an_image_of_nothing_has_no_points() -> None:
 
 
 def test_impossible_sensors_are_an_error() -> None:
-    for noise, missing in ((-1.0, 0.0), (np.nan, 0.0), (1.0, 1.5), (1.0, np.nan)):
-        with pytest.raises(SimulationError, match="`noise` must be from 0"):
-            DepthSensor(noise=noise, missing=missing)
+    for name, value in (
+        ("noise", -1.0),
+        ("noise", np.nan),
+        ("missing", 1.5),
+        ("missing", np.nan),
+        ("colour_noise", 300),
+    ):
+        setting: dict[str, Any] = {name: value}
+        with pytest.raises(SimulationError, match=f"^`{name}` must be from 0 to .*, got {value:g}$"):
+            DepthSensor(**setting)
     with pytest.raises(SimulationError, match="grazing"):
         DepthSensor(grazing=(1.0, 0.5))

@@ -1,4 +1,4 @@
-"""The engines beside each other, and the paper's: its sub-graphs, its limits, and what it says of them."""
+"""The engines beside each other, and the paper's: its sub-graphs, its limits, and what it says about them."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def graphs(draw: st.DrawFn, least: int = 1, most: int = 5) -> tuple[int, list[Ed
 def reference(
     first: tuple[int, list[Edge]], second: tuple[int, list[Edge]], iterations: int, prior: Matrix | None = None
 ) -> Matrix:
-    """Equations 5 to 9 with sums over pairs of edges, label by label."""
+    """Compute equations 5 to 9 with sums over pairs of edges, label by label."""
     (n1, edges1), (n2, edges2) = first, second
     shared = {label for _, _, label in edges1} & {label for _, _, label in edges2}
 

@@ -25,14 +25,14 @@ RELATIONS = default_ontology().relations
 
 
 def grid(count: int, seed: int = 0) -> np.ndarray:
-    """Boxes of about one size at random places."""
+    """Draw boxes of about one size at random places."""
     rng = np.random.default_rng(seed)
     low = rng.uniform(0, np.sqrt(count), (count, 2))
     return np.stack([low, low + rng.uniform(0.1, 0.5, (count, 2))], axis=1)
 
 
 def chain(words: list[str]) -> RelationGraph:
-    """Objects d0, d1, ..., each related to the next by a word."""
+    """Return objects d0, d1, ..., each related to the next by a word."""
     facts = [Fact(f"d{i}", (RELATIONS[word],), f"d{i + 1}") for i, word in enumerate(words)]
     return RelationGraph.from_facts(RELATIONS, [f"d{i}" for i in range(len(words) + 1)], facts)
 

@@ -32,7 +32,7 @@ PRIOR = shipped_models()
 
 
 def alike_left(count: int, seed: int = 3) -> list[SaidPairs]:
-    """Scenes of six boxes in which 'left' is said of the two that are most alike in size, one left of the other."""
+    """Return scenes of six boxes in which 'left' is said about the two of the most similar sizes, side by side."""
     rng, lessons = np.random.default_rng(seed), []
     for _ in range(count):
         low, sides = rng.uniform(0, 10, (6, 2)), rng.uniform(0.1, 2.0, (6, 1))
@@ -68,7 +68,7 @@ def test_a_fact_that_counts_nothing_teaches_nothing() -> None:
 
 @pytest.mark.parametrize(("word", "model"), [("near", "nearness"), ("behind", "vertical"), ("inside", "containment")])
 def test_every_graded_word_can_be_learned(word: str, model: str) -> None:
-    """Fit a word to scenes in which it is said of two boxes that fit it less than five others."""
+    """Fit a word to scenes in which it is said about two boxes that fit it less than five others."""
     rng, lessons = np.random.default_rng(4), []
     for _ in range(8):
         low = rng.uniform(0, 10, (5, 3))

@@ -39,7 +39,7 @@ RELATIONS = default_ontology().relations
 
 
 def row_of(n: int, *facts: Fact) -> Situation:
-    """n cups in a row from left to right, described by facts."""
+    """Return n cups in a row from left to right, described by facts."""
     names = [f"cup_{i}" for i in range(n)]
     boxes = np.array([[[2.0 * i, 0.0], [2.0 * i + 1, 1.0]] for i in range(n)])
     return situation_of(

@@ -27,7 +27,7 @@ def attributes(seed: int, n: int = 7) -> Attributes:
 
 
 def fits(said: Description, other: int, known: Attributes, among: range) -> bool:
-    """Return True if all that is said of an object is true of another one, tested attribute by attribute."""
+    """Return True if all that is said about an object is true of another one, tested attribute by attribute."""
     if said.noun is not None and known.nouns[other] not in (None, said.noun):
         return False
     if said.colour is not None and known.colours[other] not in (None, said.colour):

@@ -39,7 +39,7 @@ def in_image(word: str) -> SizeMixture:
 
 
 def sides(look: SizeMixture) -> list[tuple[float, float]]:
-    """Length and width of the box in metres, of each way in which it looks."""
+    """Return length and width of the box in metres, for each view of it."""
     return [(float(np.exp(length)), float(np.exp(length + aspect))) for length, aspect in look.centres]
 
 

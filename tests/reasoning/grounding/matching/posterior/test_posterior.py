@@ -85,7 +85,7 @@ def test_chains_cross_valleys_and_average_groups() -> None:
 
 
 def permanents(unary: np.ndarray, absent: float) -> np.ndarray:
-    """Marginals without facts, by recursion over the sets of things that are taken."""
+    """Return the marginals without facts, by recursion over the sets of things that are taken."""
     n1, n2 = unary.shape
     weight = np.concatenate([np.exp(unary), np.full((n1, 1), math.exp(absent))], axis=1)
     marginals = np.zeros((n1, n2 + 1))

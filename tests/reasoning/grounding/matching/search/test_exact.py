@@ -20,7 +20,7 @@ def blank(n1: int, n2: int, absent: float = -1.0) -> Problem:
 
 
 def knotty(n: int, facts: int) -> Problem:
-    """Random tables that nothing satisfies together: no bound is near."""
+    """Draw random tables that nothing satisfies together: no bound is near."""
     rng = np.random.default_rng(5)
     ends = np.array([rng.choice(n, 2, replace=False) for _ in range(facts)])
     tables = rng.normal(0, 1, (facts, n, n)).astype(np.float32)
