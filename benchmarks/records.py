@@ -145,6 +145,7 @@ RUNS = (
     Run("habits", "Learning", "places of unseen things, from examples of where a person puts things", data=True),
     Run("laying", "Learning", "prediction of what is laid next, and where"),
     Run("laying-told", "Learning", "prediction of what is laid next, also from what a person said", "laying", "--told"),
+    Run("laying-films", "Learning", "layings watched by a moving camera", "laying", "--films 4 --seed 21"),
     Run("activities", "Learning", "recognition of ways to lay a table, and of steps in the wrong order"),
     Run("attributes", "Learning", "adjectives with hidden meanings, learned from sentences"),
     Run("orientation", "Perception", "heads and handles found in simulated clouds"),
