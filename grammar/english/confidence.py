@@ -35,6 +35,7 @@ class Guess(StrEnum):
     THEY = "it is not clear which things 'they' stands for"
     STRANGE = "these words may be several things, or have a verb among them, and not be one name"
     BARE = "a word without an article can be another word than the name of a thing"
+    NO_THING = "these words are not the name of a thing that has a place"
 
 
 UNANCHORED = frozenset({Guess.OF_THE_LAST, Guess.OF_EARLIER})
@@ -55,6 +56,7 @@ SHARE_RIGHT = {
     Guess.ELLIPSIS: 0.6,
     Guess.THEY: 0.3,
     Guess.STRANGE: 0.33,
+    Guess.NO_THING: 0.1,
 }
 """Share of right facts among those with one guess.
 

@@ -68,6 +68,8 @@ OPPOSITES = {
 }  # fmt: skip
 _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
+_LASTING = frozenset({"colour", "material", "contents", "ordinal"})
+"""What holds of a thing from one mention to the next, and tells it from others of its noun."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
 _FURTHER = re.compile(r"^.{0,12}\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
@@ -257,7 +259,7 @@ class References:
             (a.dimension, a.word)
             for a in phrase.adjectives
             if a.degree is Degree.PLAIN or a.dimension in ("position", "size", "height", "length")
-        }
+        } | _marks(phrase)
         own_end = min((p.span[0] for p in phrase.predicates if p.span[0] > phrase.span[0]), default=phrase.span[1])
         written = self.text[phrase.span[0] : own_end].casefold()
         words = written.replace(",", " ").split()
@@ -292,6 +294,10 @@ class References:
         words = self.words(phrase)
         entity.mention(words)
         entity.compared = False
+        if not entity.members and entity.group is None:
+            known = {dimension for dimension, _ in entity.adjectives}
+            plain = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN}
+            entity.adjectives |= {mark for mark in plain | _marks(phrase) if mark[0] in _LASTING - known}
         if entity.members and entity.noun:
             for leaf in entity.leaves():
                 leaf.mention(words)
@@ -959,9 +965,23 @@ def _agreement(entity: Entity, phrase: NounPhrase) -> int:
     return several + sum((a.dimension, a.word) in entity.adjectives for a in phrase.adjectives)
 
 
+def _marks(phrase: NounPhrase) -> set[tuple[str, str]]:
+    """Return what tells a thing from others of its noun: *bowl of rice*, *second row from the bottom*."""
+    of = phrase.of
+    filled = of is not None and bool(of.head) and of.determiner is None and of.owner is None
+    marks = {("contents", of.head)} if of is not None and filled and last_word(phrase.head) not in PARTS else set()
+    for predicate in phrase.predicates:
+        if predicate.relation == "ordinal" and predicate.value is not None and not predicate.reversed:
+            marks.add(("ordinal", f"{predicate.value.rank} from {predicate.part}"))
+    return marks
+
+
 def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:
     if entity.members:
         return False
+    told = dict(_marks(phrase))
+    if any(told.get(dimension, word) != word for dimension, word in entity.adjectives):
+        return True
     for adjective in phrase.adjectives:
         words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
         if adjective.dimension in ("colour", "material", "position", "rank") and words and adjective.word not in words:
