@@ -373,6 +373,11 @@ def _deny_contrasts(words: list[Word]) -> None:
         last = i + 1 == len(words) or not words[i + 1].is_word
         if words[i].norm in ("yet", "anymore") and denied and last and words[i - 1].is_word:
             del words[i]  # 'it is not on the saucer yet'
+    for i in range(1, len(words) - 1):
+        if words[i].norm == "high" and words[i + 1].norm == "above" and words[i - 1].norm not in DETERMINERS:
+            words[i].norm, words[i].end = "above", words[i + 1].end
+            del words[i + 1]  # 'high above the cup'
+            break
     for i in range(len(words) - 3, -1, -1):
         if [word.norm for word in words[i : i + 3]] == ["not", "you", "dare"]:
             del words[i + 1 : i + 3]

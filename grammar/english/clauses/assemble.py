@@ -394,7 +394,7 @@ class Assembly:
             behind = next((p.arguments[0] for p in said if p.arguments), subject.of)
             return None if behind is None else Viewpoint(span, back=behind)
         if built.shape == "said" and said and not built.verbs:
-            framing = [p for p in said if p.relation in _FRAMES]
+            framing = [p for p in said if p.relation in _FRAMES and p.subject_part is None]
             if (
                 link in ("if", "when", "while", "as")
                 or (framing and not self.clauses and not self.fragments)
@@ -644,12 +644,16 @@ class Assembly:
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
         main = flat(replace(verb, thing=None))
+        denied = False
         for part in verb.said:
+            denied = (denied and part.choice) or any(not p.positive for p in part.predicates[-1:])
             if part.choice:
                 chosen = (
                     part.predicates if positive else tuple(replace(p, positive=not p.positive) for p in part.predicates)
                 )
-                if positive:
+                if positive and denied:  # 'behind the copier, not on it or in the sink'
+                    main += tuple(replace(p, positive=not p.positive) for p in chosen)
+                elif positive:
                     choices.append(chosen)
                 else:  # 'not on the copier or in the sink' is neither
                     main += chosen
@@ -777,7 +781,7 @@ def _split_frames(said: tuple[Said, ...]) -> tuple[tuple[Said, ...], Viewpoint |
     """Separate the viewpoint from what stands before a clause: *facing the window*, *from the door*."""
     top = [p for part in said for p in part.predicates]
     nested = [q for p in top for argument in p.arguments for q in argument.predicates if q.relation == "facing"]
-    if not nested and not any(p.relation in _FRAMES for p in top):
+    if not nested and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
         return said, None
     everything = tuple(p for part in said for p in part.predicates)
     return (), viewpoint_of(everything)

@@ -10,7 +10,7 @@ from lark import Transformer, v_args
 
 from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.built import Built, Noun, Said, Verb, misunderstood, union
-from deixis.grammar.english.clauses.places import directions_of, is_place, place
+from deixis.grammar.english.clauses.places import directions_of, is_place, other_side, place
 from deixis.grammar.english.clauses.predicates import (
     AWAY_FROM,
     DIRECTION_RELATIONS,
@@ -424,6 +424,9 @@ class Builder(Transformer[Any, Built]):
         if relation == "opposite" and noun.phrase.head in _SIDES and noun.phrase.of is None:
             misunderstood(span, "this does not say what is on the other side")
             return (*noun.phrase.predicates, *extra)  # 'opposite left'
+        if relation == "opposite" and relator.preposition.phrase.endswith("side of") and noun.phrase.head:
+            kept = tuple(p for p in noun.phrase.predicates if p.relation != "from")
+            return (other_side(relator, noun.phrase, span), *kept, *extra)
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
             spots = _places(relator, noun.phrase.members, span)
             if noun.phrase.joined_by == "or":  # 'in either the middle or the back of the crate'

@@ -19,6 +19,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PLACES_OF,
     SUBSTANCES,
     SURFACES,
+    SURROUNDINGS,
     VESSELS,
     VIEWER_WORDS,
     last_word,
@@ -59,10 +60,13 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     flat = noun in ("wall", "ceiling") and all(
         p.relation in DIRECTIONS | {"next_to", "near"} for p in phrase.predicates
     )
+    ends = [one for p in phrase.predicates for a in p.arguments for one in (a.members or (a,))]
+    on_it = entity.role is Role.SURFACE and all(p.relation in _BESIDE | {"above", "below"} for p in phrase.predicates)
+    on_it = on_it and beside and all(a.head and last_word(a.head) not in SURROUNDINGS for a in ends)
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
     own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
     stuff = noun in SUBSTANCES and phrase.determiner is None and phrase.owner is None  # 'in water behind the counter'
-    return (around and bare) or (wide and (bare or beside)) or flat or amid or own or stuff
+    return (around and bare) or on_it or (wide and (bare or beside)) or flat or amid or own or stuff
 
 
 COMPARTMENTS = frozenset(

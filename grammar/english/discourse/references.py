@@ -72,7 +72,7 @@ _LASTING = frozenset({"colour", "material", "contents", "ordinal"})
 """What holds of a thing from one mention to the next, and tells it from others of its noun."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
-_FURTHER = re.compile(r"^.{0,12}\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
+_FURTHER = re.compile(r"\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
 """Words before other things of a kind than those before."""
 _SIDES = frozenset(
     ["side", "front", "back", "rear", "top", "bottom", "left", "right", "end", "middle", "upper", "lower"]
@@ -357,7 +357,7 @@ class References:
         ):
             return None
         latest_first = self._named_like(phrase.head)
-        if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[1]]):
+        if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[0]] + self.words(phrase)):
             return None
         if any(a.word == "remaining" for a in phrase.adjectives):
             return self._remaining(phrase, latest_first)

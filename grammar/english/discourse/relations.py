@@ -352,8 +352,14 @@ class Relations(Mentions):
                     self._add("edge", (subject,), (), value=found.value)
                     self._add("middle", (subject,), (), value=f"{found.value or ''} edge".strip())
                     self.edge = found.value
-                return
-            if found is not None and found.role in (Role.THING, Role.SURROUNDING):
+                    return
+                self._at_region(subject, "on", found)  # 'at the left end of the front edge of the tray'
+                if predicate.relation == "middle":
+                    return  # of the side, and not of the whole
+                if found.of is not None and found.of.role is Role.THING:
+                    arguments.append(found.of)
+                continue
+            if isinstance(found, Entity) and found.role in (Role.THING, Role.SURROUNDING):
                 arguments.append(found)
         if not arguments and predicate.relation in ("end", "edge", "side", "corner") and predicate.part:
             before = [
