@@ -113,6 +113,8 @@ _WORD = re.compile(
 )
 _CLITICS = ("'s", "'re", "'m", "'ll", "'d", "'ve")
 _ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z])|\n[ \t]*\n|\n")
+_ALONE = re.compile(r"\([a-z][^().!?\n]{20,}\)(?=\s+[A-Z])")
+"""Sentence in parentheses without a full stop of its own."""
 _STEP = re.compile(
     r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714]"
     r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
@@ -207,6 +209,9 @@ def _commands(mark: re.Match[str]) -> bool:
 
 
 def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
+    alone = _ALONE.match(text, start)
+    if alone is not None:
+        return alone.end(), False
     for match in _ENDS.finditer(text, start):
         mark = match[0]
         if mark.startswith("\n"):
@@ -290,6 +295,18 @@ def _read_hours(words: list[Word]) -> None:
 
 _HOUR = re.compile(r"(1[0-2]|[1-9])(?::[0-5]\d)?")
 """An hour of a clock face as a direction; minutes make no difference."""
+
+
+def _read_levels(words: list[Word]) -> None:
+    """Read *eye level* and *elbow height* as one noun, which names no thing."""
+    for i in range(len(words) - 2, -1, -1):
+        if words[i].norm in _MEASURING_PARTS and words[i + 1].norm in ("level", "height"):
+            words[i].norm, words[i].end = f"{words[i].norm}-{words[i + 1].norm}", words[i + 1].end
+            del words[i + 1]
+
+
+_MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
+"""Parts of the body, and of a room, at whose level a thing can be."""
 
 
 def _read_fractions(words: list[Word]) -> None:
@@ -594,6 +611,7 @@ def words_of(text: str, span: Span) -> list[Word]:
         del found[ends - 1], found[0]  # the whole sentence is in parentheses
     _join_asides(text, found)
     _read_hours(found)
+    _read_levels(found)
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)

@@ -451,10 +451,14 @@ class Builder(Transformer[Any, Built]):
             return (Predicate("behind", (person,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         told = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
-        if (last_word(noun.phrase.head) in _MEASURES or told) and relation in ("at", "on"):
+        measured = last_word(noun.phrase.head).rpartition("-")[2] in _MEASURES  # 'at eye-level'
+        if (measured or told) and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            away = (replace(p, relation="far") for p in noun.phrase.predicates if p.relation == "from" and p.arguments)
-            return (*away, *extra)  # 'at a safe distance from the stove'
+            said = tuple(
+                replace(p, relation="far") if p.relation == "from" else p
+                for p in noun.phrase.predicates if p.arguments and (measured or p.relation == "from")
+            )  # fmt: skip
+            return (*said, *extra)  # 'at a safe distance from the stove', 'at eye level behind the desk'
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
             return extra

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
 from deixis.grammar.english.clauses.ellipses import filled_in
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Degree, NounPhrase
-from deixis.grammar.english.vocabulary.function_words import PERSONS
+from deixis.grammar.english.vocabulary.function_words import PERSONS, UNITS
 from deixis.grammar.english.vocabulary.nouns import (
     AIMED_PARTS,
     HEADED,
@@ -23,9 +24,11 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Preposition
 from deixis.grammar.english.vocabulary.tables import word_set
-from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
+from deixis.grammar.english.vocabulary.verbs import PUT_VERBS, TRANSITIVE_RELATIONS
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
+_LENGTHS = UNITS.keys() - word_set("hand finger thumb palm fist arm") | {"inche", "square"}
+"""Words of the measure of a thing."""
 _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
 _BREAKS = frozenset({"COMMA", "CUT", "BUT"})
@@ -81,7 +84,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
-        _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
+        _without_times, _without(_relative_aside), _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
         _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
         _without(_depicted), _without(_place_taken), _without(_count_apart),
@@ -110,7 +113,12 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         chunk = chunks[i]
         closing = next((k for k in range(i, len(chunks)) if text[slice(*chunks[k].span)] == ")"), None)
         inside = chunks[i + 1 : closing]
-        said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
+        opened = text[slice(*chunk.span)] == "(" and closing is not None and kept and inside
+        if opened and _is_conditional(inside):
+            _leave_out(inside, "what parentheses say under a condition is not read")
+            i = (closing or i) + 1
+            continue
+        said = opened and kept[-1].type == "NP"
         if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
             subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
@@ -127,6 +135,15 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         i += 1
     ends = len(kept) - 1 if after and kept and kept[-1].type == "CUT" else len(kept)
     return [*kept[:ends], *after, *kept[ends:]]
+
+
+def _is_conditional(inside: list[Chunk]) -> bool:
+    """Return True for words in parentheses that have a condition of their own: *(and drinks, if you serve any)*."""
+    types = [chunk.type for chunk in inside]
+    limited = "SUB" in types and not FINITE.isdisjoint(types)
+    if types[0] == "SUB":
+        limited = "COMMA" in types and not FINITE.isdisjoint(types[types.index("COMMA") :])
+    return limited and types[0] in ("SUB", "AND", "OR", "BUT")
 
 
 def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
@@ -380,6 +397,43 @@ def _apposition_of_object(chunks: list[Chunk], at: int) -> _Run | None:
     joints = JOINT_TYPES - {"AND"} if filled else JOINT_TYPES
     end = next((k for k in range(at + 1, len(chunks)) if chunks[k].type in joints), len(chunks))
     return (end + 1, None) if type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in ("PREP", "ADV") else None
+
+
+def _relative_aside(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find a relative clause after a comma whose verb says no place: *the candle, which represents fire, is …*."""
+    verb = next((k for k in range(at + 2, len(chunks)) if chunks[k].type != "ADVERB"), len(chunks))
+    if type_at(chunks, at) != "COMMA" or type_at(chunks, at + 1) != "REL" or verb == len(chunks):
+        return None
+    end = end_before(chunks, verb + 1, _BREAKS)
+    goes_on = type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in FINITE
+    lost = chunks[verb].type == "NP" and goes_on and end == verb + 1 and chunks[verb].value.determiner is None
+    group = chunks[verb].value if chunks[verb].type in ("VERB", "TVERB") else None
+    says_nothing = group is not None and group.kind in ("other", "unknown") and group.lemma not in TRANSITIVE_RELATIONS
+    if not (lost or says_nothing):
+        return None
+    _leave_out(chunks[at + 1 : end], "this clause does not say where something is")
+    return end + 1 if goes_on else end, None
+
+
+def _leave_out(chunks: list[Chunk], reason: str) -> None:
+    """Report chunks that are left out."""
+    misunderstood((chunks[0].span[0], chunks[-1].span[1]), reason)
+
+
+def _measures_apart(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find how large the subject is, between commas: *a small tray, about a foot square, stands …*."""
+    if at != 1 or type_at(chunks, 0) != "NP" or type_at(chunks, at) != "COMMA":
+        return None
+    end = end_before(chunks, at + 1, _BREAKS)
+    inner = [chunk for chunk in chunks[at + 1 : end] if chunk.type != "ADVERB"]
+    sizes = {chunk.type for chunk in inner} <= {"NP", "ADJP", "AND", "MEASURE"} and bool(inner)
+    if not sizes or type_at(chunks, end) != "COMMA" or type_at(chunks, end + 1) not in FINITE:
+        return None
+    told = all(not _LENGTHS.isdisjoint(c.value.head.split()) for c in inner if c.type == "NP")
+    if not told:
+        return None
+    _leave_out(chunks[at + 1 : end], "a measure without 'is' is not read here")
+    return end + 1, None
 
 
 def _turn(chunks: list[Chunk], at: int) -> _Run | None:

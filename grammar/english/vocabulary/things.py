@@ -63,10 +63,10 @@ _ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude
 _CONCRETE = word_set(
     "station lotion potion cushion section illustration partition junction portion foundation extension invitation"
     " publication installation composition collection selection plantation solution caption mansion pension fraction"
-    " extension television ration medication carnation decoration intersection ammunition bastion elevation"
+    " television ration medication carnation decoration intersection ammunition bastion elevation"
     " instrument ornament garment monument cement parchment pigment compartment document equipment element apartment"
-    " arrangement movement ointment pavement basement casement segment fragment filament ligament attachment implement battlement pediment"
-    " tenement condiment monument refreshment liniment embankment escarpment complement sediment moment"
+    " arrangement movement ointment pavement basement casement segment fragment filament ligament attachment implement"
+    " battlement pediment tenement condiment monument refreshment liniment embankment escarpment complement sediment moment"
     " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
     " mechanism organism position"
@@ -78,6 +78,12 @@ _ADVERBS_NOT = word_set(
     " barfly dragonfly sally polly rally folly tally billy filly willy chilly potbelly monopoly anomaly kelly"
     " only lonely likely holy homily wobbly bubbly frilly"
 )
+_THIRD_PERSONS = word_set(
+    "adds represents symbolises symbolizes signifies ensures makes gives lets seems becomes consists encourages"
+    " invites improves enhances defines anchors frames completes softens complements suits varies differs depends"
+    " matters works brings draws guides leads invokes honours honors reflects means keeps"
+)
+"""Verbs in the third person that are no nouns, besides those that tell a place."""
 _OF_CLAUSES = (DETERMINERS | POSSESSIVES.keys() | MODALS.keys()) - word_set("a single only same other need no can")
 """Words that stand in a clause and not inside a name; *can* is a vessel too, and *panel A* a name."""
 
@@ -111,7 +117,7 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     words = noun.split()
     if _is_piece_of_clause(words, nouns):
         return False
-    last = last_word(noun)
+    last = last_word(noun).rpartition("-")[2]  # 'eye-level'
     if last not in _WITHOUT_PLACE and nouns.knows(last):
         return True
     if last in _WITHOUT_PLACE:
@@ -125,7 +131,8 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
         return False
     for place, word in enumerate(words):
         form = verb_forms().get(word)
-        third = form is not None and form.form == "s" and place > 0 and not nouns.knows(word)
+        third = (form is not None and form.form == "s") or word in _THIRD_PERSONS
+        third = third and place > 0 and not nouns.knows(word)
         adverb = word.endswith("ly") and len(word) > 4 and word not in _ADVERBS_NOT and not nouns.knows(word)
         if third or adverb or word in _OF_CLAUSES or word in OTHER_UNITS & _TIMES:
             return True

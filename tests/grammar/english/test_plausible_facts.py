@@ -1,0 +1,115 @@
+"""Facts of instructions that a careful reader takes from them, and facts that no reader would take."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.grammar.english.reader import read_english
+from deixis.grammar.english.vocabulary.known_nouns import known_nouns
+from deixis.grammar.english.vocabulary.things import can_have_a_place
+from deixis.grammar.reading import Reading
+from deixis.ontology.tbox import default_ontology
+
+
+def read(text: str) -> Reading:
+    reading = read_english(text).reading
+    assert reading is not None
+    return reading
+
+
+def asserted(text: str) -> list[str]:
+    """Return the places that a text asserts, without counts, colours and contents."""
+    minor = ("count(", "colour(", "size(", "material(", "contents(", "kind(", "shape(")
+    return [str(f.content) for f in read(text).stated if f.asserted and not str(f.content).startswith(minor)]
+
+
+@pytest.mark.parametrize(
+    "noun",
+    ["eye level", "location", "left", "preparation", "elegance", "moss layer adds", "six inches", "buffet style",
+     "guest carefully slides", "three o'clock", "type", "start"],
+)  # fmt: skip
+def test_words_for_no_thing_have_no_place(noun: str) -> None:
+    assert not can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+@pytest.mark.parametrize(
+    "noun",
+    ["censer", "panel a", "arrangement", "instrument stand", "price tag", "butterfly net", "time switch", "spirit level",
+     "watering can", "station", "goods basket", "step stool", "bookcase", "law book"],
+)  # fmt: skip
+def test_words_for_things_have_places(noun: str) -> None:
+    assert can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+def test_facts_of_what_is_no_thing_are_reported() -> None:
+    reading = read("The jug stands behind the cup. The jug stands above eye level. The plates are near the jug.")
+    assert [str(f.content) for f in reading.stated if f.asserted] == ["behind(jug, cup)", "near(plates, jug)"]
+    (problem, *_) = reading.sentences[1].problems
+    assert "not the name of a thing" in problem.message
+
+
+def test_things_among_others_keep_their_places() -> None:
+    assert asserted("The knife and the preparation are behind the cup.") == ["behind(knife, cup)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The bowl of rice is left of the cup. The bowl of soup is right of the cup.",
+         ["left(bowl_1, cup)", "right(bowl_2, cup)"]),
+        ("The bowl of rice is left of the cup. The bowl is near the jug.", ["left(bowl, cup)", "near(bowl, jug)"]),
+        ("Put the pins along the second row from the bottom, and the nails in the second row from the top.",
+         ["ordinal(row_1, '2 from bottom')", "along(pins, row_1)", "ordinal(row_2, '2 from top')",
+          "inside(nails, row_2)"]),
+        ("The queen stands on the box. The white queen is near the cup. The black queen is near the jug.",
+         ["on(white_queen, box)", "near(white_queen, cup)", "near(black_queen, jug)"]),
+        ("The plates are behind the cup. Extra plates (small, deep) are on the box.",
+         ["behind(plates_1, cup)", "on(plates_2, box)"]),
+    ],
+)  # fmt: skip
+def test_contents_order_and_colour_tell_things_apart(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The knife is on the plate, with the blade facing left.", ["on(knife, plate)", "facing(knife, 'left')"]),
+        ("The jug stands behind the cup, not on the box or in front of the pot.",
+         ["behind(jug, cup)", "not on(jug, box)", "not in_front(jug, pot)"]),
+        ("The napkin goes on the plate or to the left of the fork, but never under the plate.",
+         ["on(napkin, plate)", "not under(napkin, plate)", "left(napkin, fork)"]),
+        ("The jug stands behind the cup, not high above it.", ["behind(jug, cup)", "not above(jug, cup)"]),
+        ("The jug is on the opposite side of the plate from the cup.", ["opposite(jug, cup)"]),
+        ("The jug is on the other side of the table. The cup is on the table.", ["side(jug, 'other')", "on(cup)"]),
+        ("Put the cup at the left end of the front edge of the box.",
+         ["edge(cup, box, 'front')", "end(cup, box, 'left')"]),
+        ("Put the cup in the middle of the right side of the box.", ["side(cup, box, 'right')"]),
+        ("Put the label on the back side of the box.", ["part(label, box, 'back')"]),
+        ("Put the plates at the start of the line.", ["end(plates, line, 'start')"]),
+        ("A plate is placed on the table over the forks. The cup is on the table.",
+         ["above(plate, forks)", "on(plate)", "on(cup)"]),
+        ("Trays stand in front of the individual.", ["in_front(trays, 'individual')"]),
+    ],
+)  # fmt: skip
+def test_places_of_arrangements(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The candle, which represents fire, stands behind the bowl.", ["behind(candle, bowl)"]),
+        ("Put the candle behind the bowl, which represents water.", ["behind(candle, bowl)"]),
+        ("The tray, which holds a cup, stands behind the jug.", ["on(cup, tray)", "behind(tray, jug)"]),
+        ("A small tray, about a foot square, stands behind the jug.", ["behind(tray, jug)"]),
+        ("A small tray, 30 cm long and standing six inches high, is behind the jug.", ["behind(tray, jug)"]),
+        ("The fork lies left of the plate (and the spoon above it, if you serve soup).", ["left(fork, plate)"]),
+        ("The fork lies left of the plate (if you serve soup, the spoon is above it).", ["left(fork, plate)"]),
+        ("The fork lies left of the plate (if it is used).", []),
+        ("The fork is left of the plate. (the dessert spoon sits above the plate) If you serve soup, the cup is behind it.",
+         ["left(fork, plate)", "above(dessert_spoon, plate)"]),
+    ],
+)  # fmt: skip
+def test_asides_leave_the_places_of_their_sentence(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
