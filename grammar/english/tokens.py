@@ -305,6 +305,20 @@ def _read_levels(words: list[Word]) -> None:
             del words[i + 1]
 
 
+def _read_setups(words: list[Word]) -> None:
+    """Read *in a two-light set up* as one noun, and leave out *built-in* before a place."""
+    for i in range(len(words) - 2, 1, -1):
+        if [words[i].norm, words[i + 1].norm] == ["set", "up"]:
+            before = [word.norm for word in words[max(0, i - 4) : i]]
+            start = next((k for k in range(len(before) - 2, -1, -1) if before[k] in _PHRASE_OF_SETUP), None)
+            if start is not None and before[start + 1] in DETERMINERS:
+                words[i].norm, words[i].end = "setup", words[i + 1].end
+                del words[i + 1]
+        elif words[i].norm == "built-in" and words[i - 1].is_word and words[i + 1].norm in prepositions():
+            del words[i]
+
+
+_PHRASE_OF_SETUP = frozenset({"in", "for", "with"})
 _MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
 """Parts of the body, and of a room, at whose level a thing can be."""
 
@@ -612,6 +626,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _join_asides(text, found)
     _read_hours(found)
     _read_levels(found)
+    _read_setups(found)
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)

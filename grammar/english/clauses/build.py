@@ -242,8 +242,8 @@ class Builder(Transformer[Any, Built]):
         if len(parts) == 1:
             single: Noun = parts[0]
             return single
-        if len(parts) == 3 and _is_second_content(parts[0].phrase, parts[2].phrase):
-            return parts[0]  # type: ignore[no-any-return]
+        if len(parts) > 2 and _is_second_content(parts[-3].phrase, parts[-1].phrase):
+            return self.nps(*parts[:-2])
         members = [part.phrase for part in parts[::2]]
         joints = [part.value for part in parts[1::2]]
         first = members[0]

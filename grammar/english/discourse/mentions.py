@@ -66,7 +66,10 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
     own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
     stuff = noun in SUBSTANCES and phrase.determiner is None and phrase.owner is None  # 'in water behind the counter'
-    return (around and bare) or on_it or (wide and (bare or beside)) or flat or amid or own or stuff
+    spots = noun in ("wall", "ceiling", "floor") and all(
+        p.relation in PLACES and not p.arguments and not p.reversed for p in phrase.predicates
+    )  # 'on the wall in the corner'
+    return (around and bare) or on_it or spots or (wide and (bare or beside)) or flat or amid or own or stuff
 
 
 COMPARTMENTS = frozenset(

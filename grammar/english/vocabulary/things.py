@@ -46,14 +46,14 @@ _DIRECTIONS = word_set(
     " backwards sideways clockwise anticlockwise counterclockwise ahead upside away"
 )
 _UNNAMED = word_set(
-    "location placement vicinity surrounding surroundings whereabouts place world distance"
+    "location area placement vicinity surrounding surroundings whereabouts place world distance"
     " inch inches cm mm centimetre centimeter millimetre millimeter kilometre percent o'clock"
     " lot number bit rest majority most least dozen"
 )
 _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
-    "date help law company colour color light case work support state finish use reach rest stage rule second initial"
+    "area date help law company colour color light case work support state finish use reach rest stage rule second initial"
     " standard connection view sound tip matter trace title name story plan order choice play step storage turn"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
