@@ -580,8 +580,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
         word = " ".join(filter(None, (following.part, relation)))
         return replace(following, relation="pointing", arguments=(), part=word, span=span)
-    elif kind in ("face", "point") or lemma in ("look", "aim") or (
-        lemma in _EXTENDING and not arguments and following.part != "side"
+    elif (
+        kind in ("face", "point")
+        or lemma in ("look", "aim")
+        or (lemma in _EXTENDING and not arguments and following.part != "side")
     ):  # but 'the keyboard is extended on the right-hand side'
         meaning = "pointing" if kind == "point" or lemma in _EXTENDING else "facing"
         if relation == "pointing":

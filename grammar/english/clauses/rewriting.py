@@ -11,7 +11,7 @@ from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put
 from deixis.grammar.english.clauses.ellipses import filled_in
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Degree, NounPhrase
-from deixis.grammar.english.vocabulary.function_words import PERSONS, UNITS
+from deixis.grammar.english.vocabulary.function_words import PERSONS, READY, UNITS
 from deixis.grammar.english.vocabulary.nouns import (
     AIMED_PARTS,
     HEADED,
@@ -84,17 +84,17 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
-        _without_times, _without(_relative_aside), _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
-        _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
-        _without(_depicted), _without(_place_taken), _without(_count_apart),
-        _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
-        _without(_apposition_of_object),
-        _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
-        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
+        _with_labels_of_commands, _with_participles_of_commands, _without(_means), _with_shared_spots, _without_times,
+        _without(_relative_aside), _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative),
+        _without(_free_place), _without_asides, _without_resumed_subjects, _with_existential_have,
+        _with_verbs_of_one_person, _without(_search), _without(_infinitive), _without(_caused),
+        _without(_sought_in_vain), _without(_partition), _without(_depicted), _without(_place_taken),
+        _without(_count_apart), _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
+        _without(_apposition_of_object), _with_parts_after_verbs, _with_relative_places, _with_measures_denied,
+        _with_destinations, _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
         _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
-        _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
-        _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
+        _with_pronouns_of_lists, _with_gaps, _with_aimed_parts, _with_aims_of_subjects, _with_places_of_pairs,
+        _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -235,7 +235,14 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
         bare = done.type in ("ADJP", "PART") or (done.type == "NP" and done.end == done.start + 1)
         if bare:
             return [*chunks[:start], *(emptied(c) for c in chunks[start : start + 3]), *chunks[start + 3 :]]
-    if [type_at(chunks, start + k) for k in range(3)] != ["PREP", "NP", "COMMA"]:
+    types = [type_at(chunks, start + k) for k in range(4)]
+    if types[0] == "SUB" and types[2:] == ["COMMA", "PUT"] and chunks[start].value in ("when", "once"):
+        done = chunks[start + 1]
+        bare = done.type == "NP" and done.value.determiner is None and done.value.head in READY
+        bare = bare or (done.type == "ADJP" and all(a.word in READY for a in done.value))
+        if bare:  # 'when cool, push the rice to one side'
+            return [*chunks[:start], *chunks[start + 3 :]]
+    if types[:3] != ["PREP", "NP", "COMMA"]:
         return chunks
     phrase = chunks[start + 1].value
     before = chunks[start].value.preposition.phrase == "before"
@@ -243,6 +250,68 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
     if not before or phrase.pronoun is not None or not phrase.head or inverted:
         return chunks
     return [*chunks[:start], emptied(chunks[start]), *chunks[start + 3 :]]
+
+
+def _with_labels_of_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *Peas: plant along the wall* as *peas along the wall*: the label is the object of the command."""
+    types = [chunk.type for chunk in chunks[:4]]
+    if types[:3] != ["NP", "COLON", "NP"] or types[3:] not in (["PREP"], ["ADV"]) or chunks[0].value.determiner:
+        return chunks
+    verb = chunks[2].value
+    if verb.determiner or verb.owner is not None or verb.adjectives or verb.head not in PUT_VERBS:
+        return chunks
+    return [chunks[0], *chunks[3:]]
+
+
+def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *put the pan on the tray, placing the lid next to it* with a second command."""
+    first = next((chunk.type for chunk in chunks if chunk.type != "ADVERB"), "")
+    for i in range(1, len(chunks) - 2):
+        chunk = chunks[i]
+        led = first in ("PUT", "DO") and chunks[i - 1].type == "COMMA"
+        if led and chunk.type == "TPART" and chunks[i + 1].type == "NP" and chunks[i + 2].type in ("PREP", "ADV"):
+            group = chunk.value if isinstance(chunk.value, VerbGroup) else None
+            if group is not None and group.lemma in _PLACING:
+                command = replace(chunk, type="PUT", value=replace(group, form="base"))
+                joint = replace(chunks[i - 1], type="CUT")
+                return [*chunks[: i - 1], joint, command, *_with_participles_of_commands(chunks[i + 1 :])]
+    return chunks
+
+
+_PLACING = word_set("place put lay set position leave hang stack arrange stand insert tuck")
+"""Verbs of commands that can follow another command as a participle."""
+
+
+def _with_shared_spots(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *with the flutes and clarinets on the left* with the place after both plurals."""
+    found: list[Chunk] = []
+    accompanied = False
+    for i, chunk in enumerate(chunks):
+        accompanied = chunk.type == "WITH" or (accompanied and chunk.type not in FINITE | _BREAKS | {"SUB", "REL"})
+        found.append(chunk)
+        types = [type_at(chunks, i + k) for k in range(5)]
+        paired = types == ["NP", "AND", "NP", "PREP", "NP"] and type_at(chunks, i - 1) in ("WITH", "AND")
+        if not (accompanied and paired):
+            continue
+        bare, placed, spot = (chunks[i + k].value for k in (0, 2, 4))
+        alike = bare.plural and placed.plural and placed.determiner in (None, bare.determiner)
+        if alike and bare.head and is_place(spot) and type_at(chunks, i + 5) != "OF":
+            at = chunks[i + 1].start
+            found += [Chunk(c.type, at, at, c.value, c.span) for c in chunks[i + 3 : i + 5]]
+    return found
+
+
+def _means(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find how something is done, *by keeping both hands on it*, which says of the thing no place."""
+    named = chunks[at].type == "UNKNOWN" and chunks[at].value == "by" and at > 0
+    doing = type_at(chunks, at + 1) in ("TPART", "PART")
+    group = chunks[at + 1].value if doing else None
+    form = group.form if isinstance(group, VerbGroup) else ""
+    if not (named and doing and form == "ing" and chunks[at].end == chunks[at].start + 1):
+        return None
+    end = end_before(chunks, at + 1, _BREAKS)
+    _leave_out(chunks[at:end], "how something is done is not where it is")
+    return end, None
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:

@@ -264,6 +264,8 @@ class Mentions(Drafting, ABC):
             self.how = replace(self.how, quantifier="each")
         outer = self.how
         places = {p.part for p in predicates if p.relation in ("part", "edge") and not p.arguments and p.part}
+        if any(p.relation == "row" for p in predicates):  # 'from left to right across the stage are …'
+            predicates = tuple(p for p in predicates if p.relation != "across")
         for predicate in predicates:
             if predicate.relation == "there" and self.text[predicate.span[1] :].lstrip().casefold().startswith("but "):
                 outer = replace(outer, positive=False)  # everywhere but left of the plate

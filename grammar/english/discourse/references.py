@@ -262,7 +262,7 @@ class References:
         } | _marks(phrase)
         own_end = min((p.span[0] for p in phrase.predicates if p.span[0] > phrase.span[0]), default=phrase.span[1])
         written = self.text[phrase.span[0] : own_end].casefold()
-        words = written.replace(",", " ").split()
+        words = re.sub(r"[,:;]", " ", written).split()
         count = phrase.count
         stem = last_word(phrase.head)
         amount = written.partition(" of ")[0].split()[-1:] if " of " in written and phrase.of is None else []
@@ -384,6 +384,9 @@ class References:
                 continue  # 'the two rails' after 'a rail'
             if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
+            kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
+            if kind and not (entity.members or entity.plural or entity.group is not None):
+                continue  # 'towels' after 'a towel'
             coloured = {("colour", a.word) for a in phrase.adjectives if a.dimension == "colour"}
             if coloured and entity.members and phrase.plural and not any(
                 coloured & leaf.adjectives for leaf in entity.leaves()

@@ -233,6 +233,9 @@ ADVERBS = word_set(
     " later soon finally twice thrice"
 )
 
+READY = word_set("cool dry ready cold warm hot firm done full set finished complete assembled level straight")
+"""Words for a thing with which a step is finished: *when cool, put it on the tray*."""
+
 DEGREE_ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"
     " somewhat far much way well almost nearly partially partly completely fully diagonally vertically horizontally"

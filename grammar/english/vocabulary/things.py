@@ -53,8 +53,8 @@ _UNNAMED = word_set(
 _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
-    "area date help law company colour color light case work support state finish use reach rest stage rule second initial"
-    " standard connection view sound tip matter trace title name story plan order choice play step storage turn"
+    "area date help law company colour color light case work support state finish use reach rest stage rule second"
+    " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
 _SELDOM_THINGS = word_set("level pitch bit")
@@ -63,10 +63,10 @@ _ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude
 _CONCRETE = word_set(
     "station lotion potion cushion section illustration partition junction portion foundation extension invitation"
     " publication installation composition collection selection plantation solution caption mansion pension fraction"
-    " television ration medication carnation decoration intersection ammunition bastion elevation"
+    " television ration medication carnation decoration percussion version intersection ammunition bastion elevation"
     " instrument ornament garment monument cement parchment pigment compartment document equipment element apartment"
     " arrangement movement ointment pavement basement casement segment fragment filament ligament attachment implement"
-    " battlement pediment tenement condiment monument refreshment liniment embankment escarpment complement sediment moment"
+    " battlement pediment tenement condiment monument refreshment liniment embankment escarpment complement sediment"
     " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
     " mechanism organism position"
