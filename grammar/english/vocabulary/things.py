@@ -40,6 +40,7 @@ _ACTS = word_set(
 _TIMES = word_set(
     "time moment second minute hour day night morning afternoon evening week weekend month season year century age"
     " today tomorrow yesterday now then beforehand afterwards course duration period while"
+    " spring summer autumn winter frost harvest sunrise sunset rain storm"
 )
 _DIRECTIONS = word_set(
     "left right up down upward upwards downward downwards inward inwards outward outwards forward forwards backward"
@@ -84,7 +85,16 @@ _THIRD_PERSONS = word_set(
     " matters works brings draws guides leads invokes honours honors reflects means keeps"
 )
 """Verbs in the third person that are no nouns, besides those that tell a place."""
-_OF_CLAUSES = (DETERMINERS | POSSESSIVES.keys() | MODALS.keys()) - word_set("a single only same other need no can")
+_PARTICIPLES = word_set(
+    "placing putting positioning arranging adding keeping leaving making using moving including having"
+)
+"""Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
+_OF_CLAUSES = (
+    DETERMINERS
+    | POSSESSIVES.keys()
+    | MODALS.keys()
+    | word_set("once when while if because that which who then until not than")
+) - word_set("a single only same other need no can")
 """Words that stand in a clause and not inside a name; *can* is a vessel too, and *panel A* a name."""
 
 
@@ -129,6 +139,8 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     """Return True for a compound with a verb, an adverb or a function word among its words."""
     if len(words) == 1:
         return False
+    if words[0] in _PARTICIPLES:
+        return True
     for place, word in enumerate(words):
         form = verb_forms().get(word)
         third = (form is not None and form.form == "s") or word in _THIRD_PERSONS
