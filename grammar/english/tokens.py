@@ -318,6 +318,18 @@ def _read_setups(words: list[Word]) -> None:
             del words[i]
 
 
+def _without_settings(words: list[Word]) -> None:
+    """Leave out *in a formal setting* at the beginning of a sentence, which is not a place."""
+    place = next((i for i, word in enumerate(words[:8]) if word.norm == "setting"), 0)
+    if place < 2 or words[0].norm != "in" or words[1].norm not in ("a", "an"):
+        return
+    after = place + 1 + (words[place + 1].norm == "," if place + 1 < len(words) else 0)
+    told = any(word.norm in IS_FORMS | MODALS.keys() or word.norm in verb_forms() for word in words[after + 1 :])
+    if after < len(words) and told:
+        named = words[after].norm in DETERMINERS or words[after].norm in POSSESSIVES or after > place + 1
+        del words[: after if named else 0]
+
+
 _PHRASE_OF_SETUP = frozenset({"in", "for", "with"})
 _MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
 """Parts of the body, and of a room, at whose level a thing can be."""
@@ -627,6 +639,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_hours(found)
     _read_levels(found)
     _read_setups(found)
+    _without_settings(found)
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)

@@ -72,6 +72,7 @@ _LASTING = frozenset({"colour", "material", "contents", "ordinal"})
 """What holds of a thing from one mention to the next, and tells it from others of its noun."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
+_COMPASS = frozenset({"north", "south", "east", "west"})
 _FURTHER = re.compile(r"\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
 """Words before other things of a kind than those before."""
 _SIDES = frozenset(
@@ -171,6 +172,7 @@ class References:
         if phrase.head != term and (phrase.count or 0) > 1 and phrase.of is None:
             return None  # 'two cigarette ends'
         words = [a.word for a in phrase.adjectives if a.dimension in ("position", "size", "length", "other")]
+        words += [word for word in phrase.head.split()[:-1] if word in _COMPASS]  # 'the north edge'
         of = self.find(phrase.of) if phrase.of is not None else None
         term = {"centre": "middle", "center": "middle", "midpoint": "middle", "rear": "back"}.get(term, term)
         if term in ("front", "back", "half", "part", "quadrant"):
@@ -604,7 +606,9 @@ class References:
             return chosen
         if word in ("he", "she") and relation is not None:
             named = (e for f in self.recent for e in (f.subject, *f.others) if e is not None and e is not besides)
-            return next((entity for entity in named if entity.role is Role.PERSON), None)
+            persons = [entity for entity in self.entities if entity.role is Role.PERSON]
+            only = persons if len(persons) == 1 else []
+            return next((entity for entity in (*named, *only) if entity.role is Role.PERSON), None)
         if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None

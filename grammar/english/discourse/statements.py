@@ -111,7 +111,7 @@ class Statements(Relations):
             pair = self.references.last_two_subjects(subject)
             if pair is not None:
                 self._between(subject, [pair])  # 'a cup on the left, a jug on the right, and in between a pot'
-        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far", "around")):
+        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far", "around", "next_to")):
             self._bare_direction(subject, predicate)
         else:
             self._relate(subject, predicate, others)

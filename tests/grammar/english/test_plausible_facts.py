@@ -160,3 +160,23 @@ def test_time_and_manner_of_steps(text: str, expected: list[str]) -> None:
         assert asserted(text) == expected
     except ScriptError:
         assert expected == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("In a buffet style setting the forks are set near the napkins.", ["near(forks, napkins)"]),
+        ("In a formal setting there may be a fork behind the spoon. The cup is behind the jug.", ["behind(cup, jug)"]),
+        ("The cup is next to the jug, and a pen lies alongside.", ["next_to(cup, jug)", "next_to(pen, cup)"]),
+        ("Put the peas along the north edge of the box.", ["edge(peas, box, 'north')"]),
+        ("The horns are on the conductor's left. The other brass is on his right.",
+         ["left(horns, 'conductor')", "right(brass, 'conductor')"]),
+        ("The drum may be behind the cup instead of behind the box.", []),
+        ("The drum may be behind the cup, but not behind the box.", ["not behind(drum, box)"]),
+    ],
+)  # fmt: skip
+def test_settings_sides_and_what_may_be(text: str, expected: list[str]) -> None:
+    try:
+        assert asserted(text) == expected
+    except ScriptError:
+        assert expected == []
