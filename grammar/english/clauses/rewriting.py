@@ -84,17 +84,17 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
-        _with_labels_of_commands, _with_participles_of_commands, _without(_means), _with_shared_spots, _without_times,
-        _without(_relative_aside), _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative),
-        _without(_free_place), _without_asides, _without_resumed_subjects, _with_existential_have,
-        _with_verbs_of_one_person, _without(_search), _without(_infinitive), _without(_caused),
-        _without(_sought_in_vain), _without(_partition), _without(_depicted), _without(_place_taken),
-        _without(_count_apart), _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
-        _without(_apposition_of_object), _with_parts_after_verbs, _with_relative_places, _with_measures_denied,
-        _with_destinations, _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
-        _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
-        _with_pronouns_of_lists, _with_gaps, _with_aimed_parts, _with_aims_of_subjects, _with_places_of_pairs,
-        _with_places_of_nearest,
+        _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_means),
+        _with_shared_spots, _without_times, _without(_relative_aside), _without(_measures_apart),
+        _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
+        _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
+        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
+        _without(_depicted), _without(_place_taken), _without(_count_apart), _without(_comparison_of_size),
+        _without(_turn), _without(_posture_of_the_person), _without(_apposition_of_object), _with_parts_after_verbs,
+        _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
+        _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
+        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+        _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -250,6 +250,27 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
     if not before or phrase.pronoun is not None or not phrase.head or inverted:
         return chunks
     return [*chunks[:start], emptied(chunks[start]), *chunks[start + 3 :]]
+
+
+def _with_labels_of_definitions(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *Tea pot: a vessel for tea, placed in the middle* as *tea pot placed in the middle*."""
+    types = [type_at(chunks, k) for k in range(3)]
+    if types != ["NP", "COLON", "NP"] or chunks[2].value.determiner not in ("a", "an") or chunks[2].value.members:
+        return chunks
+    end = next((k for k in range(3, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), len(chunks))
+    told = chunks[3:end]
+    purpose = bool(told) and (told[0].type == "REL" or getattr(told[0].value, "lemma", "") == "use")
+    purpose = purpose or (bool(told) and told[0].type in ("UNKNOWN", "PREP") and _word(told[0]) == "for")
+    rest = [chunk for chunk in chunks[end + 1 :] if chunk.type != "ADVERB"]
+    if not purpose or type_at(chunks, end) != "COMMA" or not rest or rest[0].type not in ("PART", "PREP"):
+        return chunks
+    _leave_out(chunks[2:end], "a definition does not say where something is")
+    return [chunks[0], *chunks[end + 1 :]]
+
+
+def _word(chunk: Chunk) -> str:
+    """Return the preposition of a chunk, or the word of one that is not understood."""
+    return chunk.value.preposition.phrase if isinstance(chunk.value, Relator) else str(chunk.value or "")
 
 
 def _with_labels_of_commands(chunks: list[Chunk]) -> list[Chunk]:

@@ -168,6 +168,7 @@ UNITS = {
     "yards": 0.9144,
     "handbreadth": 0.1,
     "finger": 0.02,
+    "knuckle": 0.025,
     "hand": 0.1,
     "thumb": 0.02,
     "palm": 0.08,
