@@ -145,7 +145,7 @@ class _Said:
             pronouns |= {phrase.span[0] for phrase in (*firsts, *ends) if phrase.pronoun in ("it", "they")}
             odd += predicate.relation in _GAPS and len(ends) == 1 and not (ends[0].plural or ends[0].pronoun)
             odd += sum(_is_unlike(argument) for argument in predicate.arguments)
-            odd += predicate.relation == "with" and all(not a.predicates and a.plural for a in predicate.arguments)
+            odd += predicate.relation == "with" and all(not a.predicates and not a.owner for a in predicate.arguments)
             if predicate.reversed:
                 firsts, ends = ends, firsts
             value = predicate.value.word if predicate.value is not None else predicate.part or ""

@@ -84,7 +84,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
-        _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_means),
+        _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_means), _without(_prevented),
         _with_shared_spots, _without_times, _without(_relative_aside), _without(_measures_apart),
         _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
         _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
@@ -303,6 +303,17 @@ _PLACING = word_set("place put lay set position leave hang stack arrange stand i
 """Verbs of commands that can follow another command as a participle."""
 
 
+def _prevented(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what is prevented: *to keep it from sliding on the counter*."""
+    away = chunks[at].type in ("UNKNOWN", "PREP") and _word(chunks[at]) == "from" and at > 0
+    group = chunks[at + 1].value if away and type_at(chunks, at + 1) in ("TPART", "PART") else None
+    if not isinstance(group, VerbGroup) or group.form != "ing" or chunks[at].end - chunks[at].start > 1:
+        return None
+    end = end_before(chunks, at + 1, _BREAKS)
+    _leave_out(chunks[at:end], "what is prevented does not say where something is")
+    return end, None
+
+
 def _with_shared_spots(chunks: list[Chunk]) -> list[Chunk]:
     """Return *with the flutes and clarinets on the left* with the place after both plurals."""
     found: list[Chunk] = []
@@ -316,6 +327,7 @@ def _with_shared_spots(chunks: list[Chunk]) -> list[Chunk]:
             continue
         bare, placed, spot = (chunks[i + k].value for k in (0, 2, 4))
         alike = bare.plural and placed.plural and placed.determiner in (None, bare.determiner)
+        alike = alike or (bare.determiner in ("a", "an", "the") and placed.determiner is None)  # 'a knife and spoon'
         if alike and bare.head and is_place(spot) and type_at(chunks, i + 5) != "OF":
             at = chunks[i + 1].start
             found += [Chunk(c.type, at, at, c.value, c.span) for c in chunks[i + 3 : i + 5]]

@@ -249,7 +249,7 @@ class References:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
         several = several and not any(a.dimension == "colour" for a in phrase.adjectives)
-        if several and last in GENERAL and noun == last:
+        if several and last in GENERAL - {"piece"} and noun == last:
             return None  # 'the following items'
         if phrase.owner is not None:
             self.find(phrase.owner, relation, besides)
@@ -363,6 +363,8 @@ class References:
             return None
         if any(a.word == "remaining" for a in phrase.adjectives):
             return self._remaining(phrase, latest_first)
+        if self._is_ambiguous(phrase, latest_first):
+            return None
         comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
         general = phrase.plural and phrase.determiner is None and phrase.owner is None and comparative
         if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
@@ -411,6 +413,14 @@ class References:
                 return self.member(entity, phrase) or entity
             return entity
         return None
+
+    def _is_ambiguous(self, phrase: NounPhrase, latest_first: list[Entity]) -> bool:
+        """Return True for *the plate* after *the butter plate* and *the side plate*, of which neither was called so."""
+        bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
+        named = [e for e in latest_first if _can_name(phrase.head, e)]
+        longer = {e.noun for e in named if e.noun != phrase.head and not e.was_called(phrase.head)}
+        once = all(e.named == 1 for e in named)
+        return bare and not phrase.predicates and len(longer) > 1 and len(named) == len(longer)
 
     def _carrier(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
         """Return the subject that a thing lies on: *the bread plate is here, with a knife across the plate*."""
@@ -953,7 +963,7 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
     """
     told = {
         (a.dimension, a.word) for a in phrase.adjectives
-        if a.dimension in ("position", "colour") and a.degree is Degree.PLAIN
+        if a.dimension in ("position", "colour", "material", "size") and a.degree is Degree.PLAIN
     }  # fmt: skip
     longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
     if not longer or not told or told & entity.adjectives or entity.noun.startswith(tuple(w for _, w in told)):

@@ -85,6 +85,8 @@ _THIRD_PERSONS = word_set(
     " matters works brings draws guides leads invokes honours honors reflects means keeps"
 )
 """Verbs in the third person that are no nouns, besides those that tell a place."""
+_ONLY_VERBS = word_set("kneel sit lean lie hang belong remain stay contain include hold touch lay put keep")
+"""Verbs that are not the names of things."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging adding keeping leaving making using moving including having"
 )
@@ -127,6 +129,8 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     words = noun.split()
     if _is_piece_of_clause(words, nouns):
         return False
+    if len(words) > 1 and words[-1] == "thing":
+        return False
     last = last_word(noun).rpartition("-")[2]  # 'eye-level'
     if last not in _WITHOUT_PLACE and nouns.knows(last):
         return True
@@ -138,7 +142,12 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
 def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     """Return True for a compound with a verb, an adverb or a function word among its words."""
     if len(words) == 1:
-        return False
+        return words[0] in _ONLY_VERBS and not nouns.knows(words[0])
+    if words[0] in _THIRD_PERSONS | {"includes", "contains", "requires", "creates"}:
+        return True
+    at = words.index("can") if "can" in words[1:-1] else 0
+    if at and not nouns.knows(words[at + 1]):
+        return True  # 'rules can vary', not 'garbage can lid'
     if words[0] in _PARTICIPLES:
         return True
     for place, word in enumerate(words):

@@ -183,3 +183,26 @@ def test_settings_sides_and_what_may_be(text: str, expected: list[str]) -> None:
         assert asserted(text) == expected
     except ScriptError:
         assert expected == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The butter plate is behind the cup. The dinner plate is behind the jug. The fork is left of the plate.",
+         ["behind(butter_plate, cup)", "behind(dinner_plate, jug)", "left(fork, plate)"]),
+        ("The dinner plate is behind the cup. The fork is left of the plate.",
+         ["behind(dinner_plate, cup)", "left(fork, dinner_plate)"]),
+        ("The string section is behind the drums. The brass section is behind the harp.",
+         ["behind(string_section, drums)", "behind(section, harp)"]),
+        ("The plate is behind the cup, with a knife across the rim.", ["behind(plate, cup)", "across(knife, plate)"]),
+        ("Put a fork to the left of the plate. The spoon and knife are placed to the right.",
+         ["left(fork, plate)", "right(spoon, plate)", "right(knife, plate)"]),
+        ("Put the pawns in front of the pieces.", ["in_front(pawns, pieces)"]),
+        ("Place a towel under the board to keep it from sliding on the box.", ["under(towel, board)"]),
+        ("The plate is behind the cup, with a fork on the left and a knife and spoon on the right.",
+         ["behind(plate, cup)", "part(fork, 'left')", "part(knife, 'right')", "part(spoon, 'right')"]),
+        ("The essential thing stands behind the box. The cup is on the box.", ["on(cup, box)"]),
+    ],
+)  # fmt: skip
+def test_which_things_and_sides_are_meant(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
