@@ -330,6 +330,15 @@ def _without_settings(words: list[Word]) -> None:
         del words[: after if named else 0]
 
 
+def _read_facing_commands(words: list[Word]) -> None:
+    """Read *face the sofa toward the window* as *turn the sofa toward the window*."""
+    start = next((i for i, word in enumerate(words) if word.norm not in ADVERBS | HEDGES), 0)
+    norms = [word.norm for word in words[start : start + 10]]
+    named = norms[1:2] and (norms[1] in DETERMINERS or norms[1] in POSSESSIVES)
+    if norms[:1] == ["face"] and named and not {"toward", "towards"}.isdisjoint(norms[3:]):
+        words[start].norm = "turn"
+
+
 _PHRASE_OF_SETUP = frozenset({"in", "for", "with"})
 _MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
 """Parts of the body, and of a room, at whose level a thing can be."""
@@ -640,6 +649,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_levels(found)
     _read_setups(found)
     _without_settings(found)
+    _read_facing_commands(found)
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)

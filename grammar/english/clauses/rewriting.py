@@ -24,7 +24,7 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Preposition
 from deixis.grammar.english.vocabulary.tables import word_set
-from deixis.grammar.english.vocabulary.verbs import PUT_VERBS, TRANSITIVE_RELATIONS
+from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PUT_VERBS, TRANSITIVE_RELATIONS, verb_forms
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
 _LENGTHS = UNITS.keys() - word_set("hand finger thumb palm fist arm") | {"inche", "square"}
@@ -84,11 +84,11 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
-        _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_means), _without(_prevented),
-        _with_shared_spots, _without_times, _without(_relative_aside), _without(_measures_apart),
-        _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
-        _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
+        _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
+        _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
+        _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
+        _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
         _without(_depicted), _without(_place_taken), _without(_count_apart), _without(_comparison_of_size),
         _without(_turn), _without(_posture_of_the_person), _without(_apposition_of_object), _with_parts_after_verbs,
         _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
@@ -301,6 +301,17 @@ def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
 
 _PLACING = word_set("place put lay set position leave hang stack arrange stand insert tuck")
 """Verbs of commands that can follow another command as a participle."""
+
+
+def _second_verb(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the second verb of *she sits or kneels to the left of it*, which looks like a plural."""
+    types = [type_at(chunks, at + k) for k in range(-1, 3)]
+    if types not in (["VERB", "OR", "NP", "PREP"], ["VERB", "AND", "NP", "PREP"], ["VERB", "OR", "NP", "ADV"]):
+        return None
+    phrase = chunks[at + 1].value
+    form = verb_forms().get(phrase.head) if phrase.plural and phrase.determiner is None else None
+    told = form is not None and form.form == "base" and form.kind in ("posture", "lean")
+    return (at + 2, None) if told and not phrase.adjectives and phrase.head not in NAMED_LIKE_THINGS else None
 
 
 def _prevented(chunks: list[Chunk], at: int) -> _Run | None:

@@ -417,9 +417,8 @@ class References:
     def _is_ambiguous(self, phrase: NounPhrase, latest_first: list[Entity]) -> bool:
         """Return True for *the plate* after *the butter plate* and *the side plate*, of which neither was called so."""
         bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
-        named = [e for e in latest_first if _can_name(phrase.head, e)]
+        named = [e for e in latest_first if _can_name(phrase.head, e) and not e.compared]
         longer = {e.noun for e in named if e.noun != phrase.head and not e.was_called(phrase.head)}
-        once = all(e.named == 1 for e in named)
         return bare and not phrase.predicates and len(longer) > 1 and len(named) == len(longer)
 
     def _carrier(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
@@ -618,7 +617,10 @@ class References:
             named = (e for f in self.recent for e in (f.subject, *f.others) if e is not None and e is not besides)
             persons = [entity for entity in self.entities if entity.role is Role.PERSON]
             only = persons if len(persons) == 1 else []
-            return next((entity for entity in (*named, *only) if entity.role is Role.PERSON), None)
+            last = self.recent[0].subject if self.recent and self.recent[0].sentence == self.sentence else None
+            thing = last if last is not None and last.role is Role.THING and last is not besides else None
+            found = next((entity for entity in named if entity.role is Role.PERSON), None)
+            return found or thing or next(iter(only), None)  # 'Joseph stands there with a donkey beside him'
         if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None

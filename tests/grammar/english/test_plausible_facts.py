@@ -206,3 +206,17 @@ def test_settings_sides_and_what_may_be(text: str, expected: list[str]) -> None:
 )  # fmt: skip
 def test_which_things_and_sides_are_meant(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Always face the sofa toward the box.", ["facing(sofa, box)"]),
+        ("Mary sits or kneels to the left of the crib.", ["left(mary, crib)"]),
+        ("The cups stand or hang behind the crib.", ["behind(cups, crib)"]),
+        ("Joseph stands to the right of the crib with a donkey beside him.",
+         ["right(joseph, crib)", "next_to(donkey, joseph)"]),
+    ],
+)  # fmt: skip
+def test_postures_and_persons(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
