@@ -214,7 +214,7 @@ def test_which_things_and_sides_are_meant(text: str, expected: list[str]) -> Non
         ("Always face the sofa toward the box.", ["facing(sofa, box)"]),
         ("Mary sits or kneels to the left of the crib.", ["left(mary, crib)"]),
         ("The cups stand or hang behind the crib.", ["behind(cups, crib)"]),
-        ("Joseph stands to the right of the crib with a donkey beside him.",
+        ("Joseph stands to the right of the crib, often with a donkey beside him.",
          ["right(joseph, crib)", "next_to(donkey, joseph)"]),
     ],
 )  # fmt: skip
