@@ -214,7 +214,9 @@ class Discourse(Statements):
             if not part.predicates:
                 waiting.append(part)
                 continue
-            joined = bool(waiting) and len(listed) > 2 and self._joined_to(waiting[-1], part)
+            joined = bool(waiting) and self._joined_to(waiting[-1], part)
+            plurals = joined and part.plural and waiting[-1].plural and part.determiner is None
+            joined = joined and (len(listed) > 2 or plurals)  # 'knives and spoons right of the plate'
             sharing = len(waiting) if joined and not placed else int(joined)  # all of 'lemons, limes and a knife on it'
             yield from waiting[: len(waiting) - sharing]
             if sharing:

@@ -70,7 +70,9 @@ SUPPORTS = frozenset(
 _OUTER = frozenset({"top", "rim", "edge", "brim"})
 """Parts of a thing that another one lies across."""
 
-_OF_SEVERAL = frozenset({"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"})
+_OF_SEVERAL = frozenset(
+    {"circle", "near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"}
+)
 """Relations of several things together."""
 
 _MUTUAL = {"next_to": "near", "against": "touching"}
@@ -226,7 +228,8 @@ class Relations(Mentions):
         """Return the thing before, of which *the rim* is: *the plate is here, with a knife across the rim*."""
         bare = phrase.determiner == "the" and not (phrase.of or phrase.owner or phrase.adjectives or phrase.plural)
         last = self.references.recent[0] if self.references.recent else None
-        host = None if last is None or last.sentence != self.how.sentence else last.subject
+        before = None if last is None or last.sentence != self.how.sentence else last.subject
+        host = self.references.host or before
         if relation != "across" or phrase.head not in _OUTER or not bare or host is None or host is subject:
             return None
         return host.itself if host.role is Role.THING and not (host.itself.members or host.plural) else None
@@ -403,6 +406,8 @@ class Relations(Mentions):
             for leaf, side in zip(subject.leaves(), ("left", "right"), strict=True):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
             return
+        if predicate.relation == "part" and not part and not arguments:
+            return  # 'in a position', which does not say where
         self._add(predicate.relation, (subject,), tuple(arguments), value=part)
         words = self.text[slice(*predicate.span)].casefold()
         within = words.startswith(("in the ", "inside the ")) and any(last_word(a.noun) in words for a in arguments)

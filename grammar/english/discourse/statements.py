@@ -81,6 +81,9 @@ class Statements(Relations):
             apart = predicate.arguments and relation not in ("inside", "on", "touching", "pointing", "facing")
             if relation == "upside_down" or (subject.noun in FLEXIBLE and (apart or relation in DIRECTIONS)):
                 return  # the label, and not the bottle; the cable, and not the lamp
+            denied = not (self.how.positive and predicate.positive)
+            if denied and relation not in ("pointing", "facing", "open", "closed"):
+                return  # what is denied of a part need not be so of the whole
             subject = subject.whole
         elif relation == "facing" and predicate.subject_part is None and _TOWARDS & set(predicate.adverbs):
             return  # 'in the middle towards the bottom'

@@ -213,7 +213,10 @@ def test_which_things_and_sides_are_meant(text: str, expected: list[str]) -> Non
     [
         ("Always face the sofa toward the box.", ["facing(sofa, box)"]),
         ("Mary sits or kneels to the left of the crib.", ["left(mary, crib)"]),
-        ("The cups stand or hang behind the crib.", ["behind(cups, crib)"]),
+        ("Knives and spoons at right of plate.", ["right(knives, plate)", "right(spoons, plate)"]),
+        ("Do not place the right side of the desk against a box. The cup is on the box.", ["on(cup, box)"]),
+        ("The bowl should have a cloth across the top. The bowl is on the box.", ["across(cloth, bowl)", "on(bowl, box)"]),
+        ("The lamp belongs in a position. The cup is on the box.", ["on(cup, box)"]),
         ("Joseph stands to the right of the crib, often with a donkey beside him.",
          ["right(joseph, crib)", "next_to(donkey, joseph)"]),
     ],
