@@ -439,8 +439,7 @@ class Builder(Transformer[Any, Built]):
         side = PLACE_NOUNS.get(noun.phrase.head, "")
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
-            words = tuple(_TOWARDS & {relator.preposition.phrase})
-            return (Predicate(relation, (), span, value=aim, adverbs=words, positive=relator.positive), *extra)
+            return (Predicate(relation, (), span, value=aim, positive=relator.positive), *extra)
         own = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("it", "he", "she", "they")
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)

@@ -51,9 +51,6 @@ FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire"
 
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 
-_TOWARDS = frozenset({"toward", "towards"})
-"""Prepositions by which a part of a thing faces a side, but a whole thing lies nearer to it."""
-
 
 class Statements(Relations):
     """Reader of predicates."""
@@ -85,8 +82,6 @@ class Statements(Relations):
             if denied and relation not in ("pointing", "facing", "open", "closed"):
                 return  # what is denied of a part need not be so of the whole
             subject = subject.whole
-        elif relation == "facing" and predicate.subject_part is None and _TOWARDS & set(predicate.adverbs):
-            return  # 'in the middle towards the bottom'
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
