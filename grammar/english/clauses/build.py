@@ -425,8 +425,8 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, "this does not say what is on the other side")
             return (*noun.phrase.predicates, *extra)  # 'opposite left'
         if relation == "opposite" and relator.preposition.phrase.endswith("side of") and noun.phrase.head:
-            kept = tuple(p for p in noun.phrase.predicates if p.relation != "from")
-            return (other_side(relator, noun.phrase, span), *kept, *extra)
+            more = tuple(p for p in noun.phrase.predicates if p.relation != "from")
+            return (other_side(relator, noun.phrase, span), *more, *extra)
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
             spots = _places(relator, noun.phrase.members, span)
             if noun.phrase.joined_by == "or":  # 'in either the middle or the back of the crate'
