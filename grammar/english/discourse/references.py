@@ -69,7 +69,7 @@ OPPOSITES = {
 _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
 _LASTING = frozenset({"colour", "material", "contents", "ordinal"})
-"""What holds of a thing from one mention to the next, and tells it from others of its noun."""
+"""Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
 _COMPASS = frozenset({"north", "south", "east", "west"})

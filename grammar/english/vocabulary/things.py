@@ -84,7 +84,7 @@ _THIRD_PERSONS = word_set(
     " invites improves enhances defines anchors frames completes softens complements suits varies differs depends"
     " matters works brings draws guides leads invokes honours honors reflects means keeps"
 )
-"""Verbs in the third person that are no nouns, besides those that tell a place."""
+"""Verbs in the third person that are not nouns, besides those that tell a place."""
 _ONLY_VERBS = word_set("kneel sit lean lie hang belong remain stay contain include hold touch lay put keep")
 """Verbs that are not the names of things."""
 _PARTICIPLES = word_set(
