@@ -120,6 +120,7 @@ UNREAL = re.compile(
     r"|\binsist(?:s|ed)?\s+(?:up)?on\b|\byou['\u2019]ll\s+be\s+(?:telling|saying)\b|\bis\s+the\s+least\b"
     r"|\bthe\s+(?:author|painter|artist|playwright|novelist|poet|director|engraver)\s+(?:has|had|puts|places|shows)\b"
     r"|,\s*an?\s+(?:error|mistake|slip|misprint)\b"
+    r"|\bwhich\s+(?:i|we)\s+(?:doubt|deny|(?:do\s+not|don['\u2019]t)\s+(?:believe|think))\b"
     r"|\bnothing\s+like\s+(?:as|so)\b"
     r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
     r"|\b(?:theory|theories|story|map|guidebook|article|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"

@@ -155,6 +155,7 @@ def test_things_of_orchestras_kitchens_and_rooms(text: str, expected: list[str])
         ("The cup should be behind the jug and the pot behind the box.", ["behind(cup, jug)", "behind(pot, box)"]),
         ("Prevent the cup from standing behind the box.", []),
         ("Take a step back from the box.", []),
+        ("The cup, which I doubt, is behind the box.", []),
         ("Move the cup by keeping both hands around the box.", []),
     ],
 )  # fmt: skip
