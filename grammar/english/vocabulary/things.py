@@ -85,8 +85,8 @@ _THIRD_PERSONS = word_set(
     " matters works brings draws guides leads invokes honours honors reflects means keeps"
 )
 """Verbs in the third person that are not nouns, besides those that tell a place."""
-_ONLY_VERBS = word_set("kneel sit belong remain include contain put")
-"""Verbs that are never nouns, as *hold* and *keep* are."""
+_ONLY_VERBS = word_set("kneel sit lie belong remain include contain put")
+"""Verbs that are not the names of things, as *hold* and *keep* are."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging adding keeping leaving making using moving including having"
 )
