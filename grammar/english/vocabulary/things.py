@@ -14,7 +14,7 @@ from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 
 _QUALITIES = word_set(
-    "level pitch tone volume colour color brightness intensity strength weight speed temperature pressure angle slope"
+    "level pitch tone volume brightness intensity strength speed temperature pressure angle"
     " amount quantity quality degree extent rate proportion ratio dimension width height depth length thickness"
     " type kind sort class category species shade hue texture finish theme vibe feel feeling sense impression look"
     " balance symmetry harmony contrast interest appeal beauty warmth comfort safety privacy clutter tension strain"
@@ -47,14 +47,14 @@ _DIRECTIONS = word_set(
     " backwards sideways clockwise anticlockwise counterclockwise ahead upside away"
 )
 _UNNAMED = word_set(
-    "location area placement vicinity surrounding surroundings whereabouts place world distance"
+    "location area placement vicinity surrounding surroundings whereabouts world distance"
     " inch inches cm mm centimetre centimeter millimetre millimeter kilometre percent o'clock"
     " lot number bit rest majority most least dozen"
 )
 _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
-    "area date help law company colour color light case work support state finish use reach rest stage rule second"
+    "area date help law company light case work support state finish use reach rest stage rule second"
     " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
@@ -64,6 +64,7 @@ _ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude
 _CONCRETE = word_set(
     "station lotion potion cushion section illustration partition junction portion foundation extension invitation"
     " publication installation composition collection selection plantation solution caption mansion pension fraction"
+    " prescription ladyship lordship"
     " television ration medication carnation decoration percussion version intersection ammunition bastion elevation"
     " instrument ornament garment monument cement parchment pigment compartment document equipment element apartment"
     " arrangement movement ointment pavement basement casement segment fragment filament ligament attachment implement"
