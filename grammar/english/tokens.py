@@ -113,6 +113,8 @@ _WORD = re.compile(
 )
 _CLITICS = ("'s", "'re", "'m", "'ll", "'d", "'ve")
 _ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z])|\n[ \t]*\n|\n")
+_ALONE = re.compile(r"\([a-z][^().!?\n]{20,}\)(?=\s+[A-Z])")
+"""Sentence in parentheses without a full stop of its own."""
 _STEP = re.compile(
     r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714]"
     r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
@@ -207,6 +209,9 @@ def _commands(mark: re.Match[str]) -> bool:
 
 
 def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
+    alone = _ALONE.match(text, start)
+    if alone is not None:
+        return alone.end(), False
     for match in _ENDS.finditer(text, start):
         mark = match[0]
         if mark.startswith("\n"):
@@ -292,6 +297,53 @@ _HOUR = re.compile(r"(1[0-2]|[1-9])(?::[0-5]\d)?")
 """An hour of a clock face as a direction; minutes make no difference."""
 
 
+def _read_levels(words: list[Word]) -> None:
+    """Read *eye level* and *elbow height* as one noun, which names no thing."""
+    for i in range(len(words) - 2, -1, -1):
+        if words[i].norm in _MEASURING_PARTS and words[i + 1].norm in ("level", "height"):
+            words[i].norm, words[i].end = f"{words[i].norm}-{words[i + 1].norm}", words[i + 1].end
+            del words[i + 1]
+
+
+def _read_setups(words: list[Word]) -> None:
+    """Read *in a two-light set up* as one noun, and leave out *built-in* before a place."""
+    for i in range(len(words) - 2, 1, -1):
+        if [words[i].norm, words[i + 1].norm] == ["set", "up"]:
+            before = [word.norm for word in words[max(0, i - 4) : i]]
+            start = next((k for k in range(len(before) - 2, -1, -1) if before[k] in _PHRASE_OF_SETUP), None)
+            if start is not None and before[start + 1] in DETERMINERS:
+                words[i].norm, words[i].end = "setup", words[i + 1].end
+                del words[i + 1]
+        elif words[i].norm == "built-in" and words[i - 1].is_word and words[i + 1].norm in prepositions():
+            del words[i]
+
+
+def _without_settings(words: list[Word]) -> None:
+    """Leave out *in a formal setting* at the beginning of a sentence, which is not a place."""
+    place = next((i for i, word in enumerate(words[:8]) if word.norm == "setting"), 0)
+    if place < 2 or words[0].norm != "in" or words[1].norm not in ("a", "an"):
+        return
+    after = place + 1 + (words[place + 1].norm == "," if place + 1 < len(words) else 0)
+    told = any(word.norm in IS_FORMS | MODALS.keys() or word.norm in verb_forms() for word in words[after + 1 :])
+    if after < len(words) and told:
+        named = words[after].norm in DETERMINERS or words[after].norm in POSSESSIVES or after > place + 1
+        del words[: after if named else 0]
+
+
+def _read_facing_commands(words: list[Word]) -> None:
+    """Read *face the sofa toward the window* as *turn the sofa toward the window*."""
+    start = next((i for i, word in enumerate(words) if word.norm not in ADVERBS | HEDGES), 0)
+    norms = [word.norm for word in words[start : start + 10]]
+    named = norms[1:2] and (norms[1] in DETERMINERS or norms[1] in POSSESSIVES)
+    if norms[:1] == ["face"] and named and not {"toward", "towards"}.isdisjoint(norms[3:]):
+        words[start].norm = "turn"
+
+
+_PHRASE_OF_SETUP = frozenset({"in", "for", "with"})
+_MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
+"""Parts of the body, and of a room, at whose level a thing can be."""
+
+
 def _read_fractions(words: list[Word]) -> None:
     """Read *1/2* and *1 1/2* before a word, which are three and four marks, as one number."""
     for i in range(len(words) - 3, -1, -1):
@@ -373,6 +425,11 @@ def _deny_contrasts(words: list[Word]) -> None:
         last = i + 1 == len(words) or not words[i + 1].is_word
         if words[i].norm in ("yet", "anymore") and denied and last and words[i - 1].is_word:
             del words[i]  # 'it is not on the saucer yet'
+    for i in range(1, len(words) - 1):
+        if words[i].norm == "high" and words[i + 1].norm == "above" and words[i - 1].norm not in DETERMINERS:
+            words[i].norm, words[i].end = "above", words[i + 1].end
+            del words[i + 1]  # 'high above the cup'
+            break
     for i in range(len(words) - 3, -1, -1):
         if [word.norm for word in words[i : i + 3]] == ["not", "you", "dare"]:
             del words[i + 1 : i + 3]
@@ -589,6 +646,10 @@ def words_of(text: str, span: Span) -> list[Word]:
         del found[ends - 1], found[0]  # the whole sentence is in parentheses
     _join_asides(text, found)
     _read_hours(found)
+    _read_levels(found)
+    _read_setups(found)
+    _without_settings(found)
+    _read_facing_commands(found)
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)

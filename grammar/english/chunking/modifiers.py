@@ -318,5 +318,5 @@ _BEFORE_ADJECTIVE = word_set(
     " partially partly fully completely mostly almost super bit even second third half"
 )
 
-_TOOL_ADJECTIVES = frozenset({"lighter", "cooler", "warmer", "shorter"})
-"""Comparatives that are things where no noun follows: *a lighter*."""
+_TOOL_ADJECTIVES = frozenset({"lighter", "cooler", "warmer", "shorter", "individual"})
+"""Adjectives that are things or persons where no noun follows: *a lighter*."""

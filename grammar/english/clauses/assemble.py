@@ -74,6 +74,8 @@ _POINTS = frozenset(
 """Nouns of which *is that …* tells a fact: *the rule is that …*, not *the rumour is that …*."""
 _ALLOWING = frozenset({"may", "can", "must", "should", "shall"})
 """Modal verbs that forbid with a subject such as *no one*: *no one may put a cup on it*."""
+_DOUBTING = frozenset({"may", "might", "could", "would"})
+"""Modal verbs of what need not be so."""
 _LETTING = frozenset({"let", "make", "help", "watch"})
 """Verbs whose object does something itself: *don't let the cat sleep in it*."""
 _MEETING = _GETTING | {"see", "find", "notice"}
@@ -252,7 +254,7 @@ class Assembly:
             misunderstood(span, "a denial of all does not say which", "say it of each of them")
             return
         past = link == "and" and bool(self.clauses) and self.clauses[-1].past
-        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", modal=self._doubt(link), past=past), (), span),)
         people = last_word(subject.phrase.head) in PEOPLE and all(
             v.group.lemma in _GETTING
             or (v.group.lemma in _MEETING and v.group.positive and (predications or v.predications))
@@ -395,7 +397,7 @@ class Assembly:
             behind = next((p.arguments[0] for p in predicates if p.arguments), subject.of)
             return None if behind is None else Viewpoint(span, back=behind)
         if built.shape == "said" and predicates and not built.verbs:
-            framing = [p for p in predicates if p.relation in _FRAMES]
+            framing = [p for p in predicates if p.relation in _FRAMES and p.subject_part is None]
             if (
                 link in ("if", "when", "while", "as")
                 or (framing and not self.clauses and not self.fragments)
@@ -474,7 +476,7 @@ class Assembly:
                     mood = Mood.COMMAND
                     if all(not p.arguments and p.relation in _PLACES for p in predicates[:1]):
                         predicates = (*self.shared, *predicates)
-                self._append(Clause(bare, predicates, span, mood, step=self.raw.step), link)
+                self._append(Clause(bare, predicates, span, mood, modal=self._doubt(link), step=self.raw.step), link)
                 return
             if self.clauses or phrase.pronoun in _PEOPLE:
                 if phrase.head or phrase.adjectives or phrase.members:
@@ -490,6 +492,12 @@ class Assembly:
             return
         self.fragments.append(phrase)
         self.guesses_of_fragments[phrase.span] = self.guesses
+
+    def _doubt(self, link: str) -> str | None:
+        """Return the modal verb that a clause without a verb shares: *A may be on the left and B on the right*."""
+        last = self.clauses[-1] if self.clauses else None
+        shares = last is not None and link in ("and", ",", ";") and last.positive and last.modal in _DOUBTING
+        return last.modal if shares and last is not None else None
 
     def _each_with_its_place(self, phrase: NounPhrase, link: str, mood: Mood) -> bool:
         """Take in a list without verbs: *…, the knife on its right and the spoon beside the knife*.
@@ -651,12 +659,16 @@ class Assembly:
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
         main = flat(replace(verb, thing=None))
+        denied = False
         for part in verb.predications:
+            denied = (denied and part.choice) or any(not p.positive for p in part.predicates[-1:])
             if part.choice:
                 chosen = (
                     part.predicates if positive else tuple(replace(p, positive=not p.positive) for p in part.predicates)
                 )
-                if positive:
+                if positive and denied:  # 'behind the copier, not on it or in the sink'
+                    main += tuple(replace(p, positive=not p.positive) for p in chosen)
+                elif positive:
                     choices.append(chosen)
                 else:  # 'not on the copier or in the sink' is neither
                     main += chosen
@@ -786,7 +798,7 @@ def _split_frames(predications: tuple[Predication, ...]) -> tuple[tuple[Predicat
     """Separate the viewpoint from what stands before a clause: *facing the window*, *from the door*."""
     top = [p for part in predications for p in part.predicates]
     nested = [q for p in top for argument in p.arguments for q in argument.predicates if q.relation == "facing"]
-    if not nested and not any(p.relation in _FRAMES for p in top):
+    if not nested and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
         return predications, None
     everything = tuple(p for part in predications for p in part.predicates)
     return (), viewpoint_of(everything)

@@ -10,7 +10,7 @@ from lark import Transformer, v_args
 
 from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.built import Built, Noun, Predication, Verb, misunderstood, union
-from deixis.grammar.english.clauses.places import directions_of, is_place, place
+from deixis.grammar.english.clauses.places import directions_of, is_place, other_side, place
 from deixis.grammar.english.clauses.predicates import (
     AWAY_FROM,
     DIRECTION_RELATIONS,
@@ -255,8 +255,8 @@ class Builder(Transformer[Any, Built]):
         if len(parts) == 1:
             single: Noun = parts[0]
             return single
-        if len(parts) == 3 and _is_second_content(parts[0].phrase, parts[2].phrase):
-            return parts[0]  # type: ignore[no-any-return]
+        if len(parts) > 2 and _is_second_content(parts[-3].phrase, parts[-1].phrase):
+            return self.nps(*parts[:-2])
         members = [part.phrase for part in parts[::2]]
         joints = [part.value for part in parts[1::2]]
         first = members[0]
@@ -437,6 +437,9 @@ class Builder(Transformer[Any, Built]):
         if relation == "opposite" and noun.phrase.head in _SIDES and noun.phrase.of is None:
             misunderstood(span, "this does not say what is on the other side")
             return (*noun.phrase.predicates, *extra)  # 'opposite left'
+        if relation == "opposite" and relator.preposition.phrase.endswith("side of") and noun.phrase.head:
+            more = tuple(p for p in noun.phrase.predicates if p.relation != "from")
+            return (other_side(relator, noun.phrase, span), *more, *extra)
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
             spots = _places(relator, noun.phrase.members, span)
             if noun.phrase.joined_by == "or":  # 'in either the middle or the back of the crate'
@@ -449,8 +452,7 @@ class Builder(Transformer[Any, Built]):
         side = PLACE_NOUNS.get(noun.phrase.head, "")
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
-            words = tuple(_TOWARDS & {relator.preposition.phrase})
-            return (Predicate(relation, (), span, value=aim, adverbs=words, positive=relator.positive), *extra)
+            return (Predicate(relation, (), span, value=aim, positive=relator.positive), *extra)
         own = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("it", "he", "she", "they")
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
@@ -461,10 +463,14 @@ class Builder(Transformer[Any, Built]):
             return (Predicate("behind", (person,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         told = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
-        if (last_word(noun.phrase.head) in _MEASURES or told) and relation in ("at", "on"):
+        measured = last_word(noun.phrase.head).rpartition("-")[2] in _MEASURES  # 'at eye-level'
+        if (measured or told) and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            away = (replace(p, relation="far") for p in noun.phrase.predicates if p.relation == "from" and p.arguments)
-            return (*away, *extra)  # 'at a safe distance from the stove'
+            said = tuple(
+                replace(p, relation="far") if p.relation == "from" else p
+                for p in noun.phrase.predicates if p.arguments and (measured or p.relation == "from")
+            )  # fmt: skip
+            return (*said, *extra)  # 'at a safe distance from the stove', 'at eye level behind the desk'
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
             return extra

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import Relator
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Predicate, Span, Viewpoint
-from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
+from deixis.grammar.english.vocabulary.nouns import EVENTS, PEOPLE, SURFACES, last_word
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 
 _ROWS = {
@@ -39,6 +39,8 @@ _SIDES = ("left", "right", "top", "bottom", "front", "back", "far", "near", "mid
 _BINARY = {"front": "in_front", "back": "behind"}
 HOURS = {12: "top", 3: "right", 6: "bottom", 9: "left", 1: "top_right", 2: "top_right", 4: "bottom_right",
           5: "bottom_right", 7: "bottom_left", 8: "bottom_left", 10: "top_left", 11: "top_left"}  # fmt: skip
+_STARTS = frozenset({"start", "beginning"})
+"""Nouns of the end of a thing at which people come to it first: *at the start of the buffet*."""
 _ON = frozenset({"on", "inside", "at", "to", "along"})
 GENERAL_OWNERS = frozenset({"you", "me", "we"})
 
@@ -61,6 +63,7 @@ def is_place(phrase: NounPhrase) -> bool:
     return (
         phrase.head in PLACE_NOUNS
         or phrase.head == "o'clock"
+        or (phrase.head in _STARTS and phrase.of is not None and phrase.of.head not in EVENTS)
         or (_row(phrase) is not None and phrase.determiner in (None, "a", "an", "one"))
     )
 
@@ -115,6 +118,8 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     row = None if head in PLACE_NOUNS else _row(phrase)
     if row is not None and relation == "on" and phrase.of is None:
         return None  # 'kettle on back ring'
+    if head in _STARTS:
+        return _made(relator, "end", _owner(phrase), span, part="start")
     if head == "o'clock":
         return _made(relator, HOURS.get(phrase.count or 0, "top"), _owner(phrase), span, value=_clock(phrase))
     if row == "stacked" and relation == "on" and phrase.of is not None:
@@ -178,9 +183,38 @@ def _sided(
     if head in ("direction", "position") or kind == "side":
         pure = tuple(s for s in sides if s in ("left", "right", "top", "bottom", "front", "back"))
         if pure and pure == sides:
+            if kind == "side" and arguments and sides[0] in ("front", "back"):
+                return _made(relator, "part", arguments, span, part=sides[0], viewpoint=own)
             found = _direction(relator, sides, arguments, span, own, False, wide=True)
             return replace(found, part="side") if kind == "side" and head == "side" else found
     return None
+
+
+def other_side(relator: Relator, thing: NounPhrase, span: Span) -> Predicate:
+    """Return the predicate of *on the other side of the plate*, and of *… from the knife*.
+
+    Parameters
+    ----------
+    relator
+        Preposition with its adverbs.
+    thing
+        Thing whose side is meant.
+    span
+        Place of the phrase in the text.
+
+    Returns
+    -------
+    Predicate
+        *Opposite* of what stands after *from*; else a side of a table or another surface, which is on it, and
+        *opposite* of another thing.
+    """
+    bare = replace(thing, predicates=())
+    beyond = next((p for p in thing.predicates if p.relation == "from" and p.arguments), None)
+    if beyond is not None:
+        return _made(relator, "opposite", beyond.arguments, span)
+    if last_word(thing.head) in SURFACES:
+        return _made(relator, "side", (bare,), span, part="other")
+    return _made(relator, "opposite", (bare,), span)
 
 
 def _direction(

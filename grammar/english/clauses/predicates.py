@@ -250,7 +250,7 @@ def moved(group: VerbGroup, predications: tuple[Predication, ...], span: Span) -
 
     Returns
     -------
-    tuple of Said
+    tuple of Predication
         Places after the verb, as it makes them.
     """
     if not predications:
@@ -292,7 +292,7 @@ def with_support(group: VerbGroup, predications: tuple[Predication, ...]) -> tup
 
     Returns
     -------
-    tuple of Said
+    tuple of Predication
         Places in which *it hangs over the fire on a chain* says that the subject, not the fire, is on a chain.
     """
     if group.lemma in _HANGING and predications and len(predications[-1].predicates) > 1:
@@ -583,7 +583,11 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
         word = " ".join(filter(None, (following.part, relation)))
         return replace(following, relation="pointing", arguments=(), part=word, span=span)
-    elif kind in ("face", "point") or lemma in ("look", "aim") or (lemma in _EXTENDING and not arguments):
+    elif (
+        kind in ("face", "point")
+        or lemma in ("look", "aim")
+        or (lemma in _EXTENDING and not arguments and following.part != "side")
+    ):  # but 'the keyboard is extended on the right-hand side'
         meaning = "pointing" if kind == "point" or lemma in _EXTENDING else "facing"
         if relation == "pointing":
             relation = meaning

@@ -124,7 +124,9 @@ class _Propositions:
     spans: list[tuple[Span, _Proposition]]
     all: set[_Proposition]
     pronouns: set[int]
-    odd: int  # coordinations of unlike phrases, and gaps of which only one side is named: 'between the cup'
+    odd: (
+        int  # unlike coordinations, gaps with one side ('between the cup'), several things without a place after *with'
+    )
 
     @property
     def number(self) -> int:
@@ -143,6 +145,7 @@ class _Propositions:
             pronouns |= {phrase.span[0] for phrase in (*firsts, *ends) if phrase.pronoun in ("it", "they")}
             odd += predicate.relation in _GAPS and len(ends) == 1 and not (ends[0].plural or ends[0].pronoun)
             odd += sum(_is_unlike(argument) for argument in predicate.arguments)
+            odd += predicate.relation == "with" and all(not a.predicates and not a.owner for a in predicate.arguments)
             if predicate.reversed:
                 firsts, ends = ends, firsts
             value = predicate.value.word if predicate.value is not None else predicate.part or ""

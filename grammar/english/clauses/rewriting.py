@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
 from deixis.grammar.english.clauses.ellipses import filled_in
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Degree, NounPhrase
-from deixis.grammar.english.vocabulary.function_words import PERSONS
+from deixis.grammar.english.vocabulary.function_words import PERSONS, READY, UNITS
 from deixis.grammar.english.vocabulary.nouns import (
     AIMED_PARTS,
     HEADED,
@@ -23,9 +24,11 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Preposition
 from deixis.grammar.english.vocabulary.tables import word_set
-from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
+from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PUT_VERBS, TRANSITIVE_RELATIONS, verb_forms
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
+_LENGTHS = UNITS.keys() - word_set("hand finger thumb palm fist arm") | {"inche", "square"}
+"""Words of the measure of a thing."""
 _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
 _BREAKS = frozenset({"COMMA", "CUT", "BUT"})
@@ -81,16 +84,16 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
-        _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
-        _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
-        _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
-        _without(_depicted), _without(_place_taken), _without(_count_apart),
-        _without(_comparison_of_size), _without(_turn), _without(_posture_of_the_person),
-        _without(_apposition_of_object),
-        _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
-        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
-        _with_telegraphic_places, _without(_stranded), _with_labels_apart, _with_places_before_verbs,
-        _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+        _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
+        _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
+        _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
+        _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
+        _without(_depicted), _without(_place_taken), _without(_count_apart), _without(_comparison_of_size),
+        _without(_turn), _without(_posture_of_the_person), _without(_apposition_of_object), _with_parts_after_verbs,
+        _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
+        _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
+        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
         _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -110,7 +113,12 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         chunk = chunks[i]
         closing = next((k for k in range(i, len(chunks)) if text[slice(*chunks[k].span)] == ")"), None)
         inside = chunks[i + 1 : closing]
-        said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
+        opened = text[slice(*chunk.span)] == "(" and closing is not None and kept and inside
+        if opened and _is_conditional(inside):
+            _leave_out(inside, "what parentheses say under a condition is not read")
+            i = (closing or i) + 1
+            continue
+        said = opened and kept[-1].type == "NP"
         if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
             subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
@@ -127,6 +135,15 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         i += 1
     ends = len(kept) - 1 if after and kept and kept[-1].type == "CUT" else len(kept)
     return [*kept[:ends], *after, *kept[ends:]]
+
+
+def _is_conditional(inside: list[Chunk]) -> bool:
+    """Return True for words in parentheses that have a condition of their own: *(and drinks, if you serve any)*."""
+    types = [chunk.type for chunk in inside]
+    limited = "SUB" in types and not FINITE.isdisjoint(types)
+    if types[0] == "SUB":
+        limited = "COMMA" in types and not FINITE.isdisjoint(types[types.index("COMMA") :])
+    return limited and types[0] in ("SUB", "AND", "OR", "BUT")
 
 
 def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
@@ -218,7 +235,14 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
         bare = done.type in ("ADJP", "PART") or (done.type == "NP" and done.end == done.start + 1)
         if bare:
             return [*chunks[:start], *(emptied(c) for c in chunks[start : start + 3]), *chunks[start + 3 :]]
-    if [type_at(chunks, start + k) for k in range(3)] != ["PREP", "NP", "COMMA"]:
+    types = [type_at(chunks, start + k) for k in range(4)]
+    if types[0] == "SUB" and types[2:] == ["COMMA", "PUT"] and chunks[start].value in ("when", "once"):
+        done = chunks[start + 1]
+        bare = done.type == "NP" and done.value.determiner is None and done.value.head in READY
+        bare = bare or (done.type == "ADJP" and all(a.word in READY for a in done.value))
+        if bare:  # 'when cool, push the rice to one side'
+            return [*chunks[:start], *chunks[start + 3 :]]
+    if types[:3] != ["PREP", "NP", "COMMA"]:
         return chunks
     phrase = chunks[start + 1].value
     before = chunks[start].value.preposition.phrase == "before"
@@ -226,6 +250,112 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
     if not before or phrase.pronoun is not None or not phrase.head or inverted:
         return chunks
     return [*chunks[:start], emptied(chunks[start]), *chunks[start + 3 :]]
+
+
+def _with_labels_of_definitions(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *Tea pot: a vessel for tea, placed in the middle* as *tea pot placed in the middle*."""
+    types = [type_at(chunks, k) for k in range(3)]
+    if types != ["NP", "COLON", "NP"] or chunks[2].value.determiner not in ("a", "an") or chunks[2].value.members:
+        return chunks
+    end = next((k for k in range(3, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), len(chunks))
+    told = chunks[3:end]
+    purpose = bool(told) and (told[0].type == "REL" or getattr(told[0].value, "lemma", "") == "use")
+    purpose = purpose or (bool(told) and told[0].type in ("UNKNOWN", "PREP") and _word(told[0]) == "for")
+    rest = [chunk for chunk in chunks[end + 1 :] if chunk.type != "ADVERB"]
+    if not purpose or type_at(chunks, end) != "COMMA" or not rest or rest[0].type not in ("PART", "PREP"):
+        return chunks
+    _leave_out(chunks[2:end], "a definition does not say where something is")
+    return [chunks[0], *chunks[end + 1 :]]
+
+
+def _word(chunk: Chunk) -> str:
+    """Return the preposition of a chunk, or the word of one that is not understood."""
+    return chunk.value.preposition.phrase if isinstance(chunk.value, Relator) else str(chunk.value or "")
+
+
+def _with_labels_of_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *Peas: plant along the wall* as *peas along the wall*: the label is the object of the command."""
+    types = [chunk.type for chunk in chunks[:4]]
+    if types[:3] != ["NP", "COLON", "NP"] or types[3:] not in (["PREP"], ["ADV"]) or chunks[0].value.determiner:
+        return chunks
+    verb = chunks[2].value
+    if verb.determiner or verb.owner is not None or verb.adjectives or verb.head not in PUT_VERBS:
+        return chunks
+    return [chunks[0], *chunks[3:]]
+
+
+def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *put the pan on the tray, placing the lid next to it* with a second command."""
+    first = next((chunk.type for chunk in chunks if chunk.type != "ADVERB"), "")
+    for i in range(1, len(chunks) - 2):
+        chunk = chunks[i]
+        led = first in ("PUT", "DO") and chunks[i - 1].type == "COMMA"
+        if led and chunk.type == "TPART" and chunks[i + 1].type == "NP" and chunks[i + 2].type in ("PREP", "ADV"):
+            group = chunk.value if isinstance(chunk.value, VerbGroup) else None
+            if group is not None and group.lemma in _PLACING:
+                command = replace(chunk, type="PUT", value=replace(group, form="base"))
+                joint = replace(chunks[i - 1], type="CUT")
+                return [*chunks[: i - 1], joint, command, *_with_participles_of_commands(chunks[i + 1 :])]
+    return chunks
+
+
+_PLACING = word_set("place put lay set position leave hang stack arrange stand insert tuck")
+"""Verbs of commands that can follow another command as a participle."""
+
+
+def _second_verb(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the second verb of *she sits or kneels to the left of it*, which looks like a plural."""
+    types = [type_at(chunks, at + k) for k in range(-1, 3)]
+    if types not in (["VERB", "OR", "NP", "PREP"], ["VERB", "AND", "NP", "PREP"], ["VERB", "OR", "NP", "ADV"]):
+        return None
+    phrase = chunks[at + 1].value
+    form = verb_forms().get(phrase.head) if phrase.plural and phrase.determiner is None else None
+    told = form is not None and form.form == "base" and form.kind in ("posture", "lean")
+    return (at + 2, None) if told and not phrase.adjectives and phrase.head not in NAMED_LIKE_THINGS else None
+
+
+def _prevented(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what is prevented: *to keep it from sliding on the counter*."""
+    away = chunks[at].type in ("UNKNOWN", "PREP") and _word(chunks[at]) == "from" and at > 0
+    group = chunks[at + 1].value if away and type_at(chunks, at + 1) in ("TPART", "PART") else None
+    if not isinstance(group, VerbGroup) or group.form != "ing" or chunks[at].end - chunks[at].start > 1:
+        return None
+    end = end_before(chunks, at + 1, _BREAKS)
+    _leave_out(chunks[at:end], "what is prevented does not say where something is")
+    return end, None
+
+
+def _with_shared_spots(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *with the flutes and clarinets on the left* with the place after both plurals."""
+    found: list[Chunk] = []
+    accompanied = False
+    for i, chunk in enumerate(chunks):
+        accompanied = chunk.type == "WITH" or (accompanied and chunk.type not in FINITE | _BREAKS | {"SUB", "REL"})
+        found.append(chunk)
+        types = [type_at(chunks, i + k) for k in range(5)]
+        paired = types == ["NP", "AND", "NP", "PREP", "NP"] and type_at(chunks, i - 1) in ("WITH", "AND")
+        if not (accompanied and paired):
+            continue
+        bare, placed, spot = (chunks[i + k].value for k in (0, 2, 4))
+        alike = bare.plural and placed.plural and placed.determiner in (None, bare.determiner)
+        alike = alike or (bare.determiner in ("a", "an", "the") and placed.determiner is None)  # 'a knife and spoon'
+        if alike and bare.head and is_place(spot) and type_at(chunks, i + 5) != "OF":
+            at = chunks[i + 1].start
+            found += [Chunk(c.type, at, at, c.value, c.span) for c in chunks[i + 3 : i + 5]]
+    return found
+
+
+def _means(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the phrase that says how something is done and gives no place: *by keeping both hands on it*."""
+    named = chunks[at].type == "UNKNOWN" and chunks[at].value == "by" and at > 0
+    doing = type_at(chunks, at + 1) in ("TPART", "PART")
+    group = chunks[at + 1].value if doing else None
+    form = group.form if isinstance(group, VerbGroup) else ""
+    if not (named and doing and form == "ing" and chunks[at].end == chunks[at].start + 1):
+        return None
+    end = end_before(chunks, at + 1, _BREAKS)
+    _leave_out(chunks[at:end], "how something is done is not where it is")
+    return end, None
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
@@ -380,6 +510,43 @@ def _apposition_of_object(chunks: list[Chunk], at: int) -> _Run | None:
     joints = JOINT_TYPES - {"AND"} if filled else JOINT_TYPES
     end = next((k for k in range(at + 1, len(chunks)) if chunks[k].type in joints), len(chunks))
     return (end + 1, None) if type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in ("PREP", "ADV") else None
+
+
+def _relative_aside(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find a relative clause after a comma whose verb says no place: *the candle, which represents fire, is …*."""
+    verb = next((k for k in range(at + 2, len(chunks)) if chunks[k].type != "ADVERB"), len(chunks))
+    if type_at(chunks, at) != "COMMA" or type_at(chunks, at + 1) != "REL" or verb == len(chunks):
+        return None
+    end = end_before(chunks, verb + 1, _BREAKS)
+    goes_on = type_at(chunks, end) == "COMMA" and type_at(chunks, end + 1) in FINITE
+    lost = chunks[verb].type == "NP" and goes_on and end == verb + 1 and chunks[verb].value.determiner is None
+    group = chunks[verb].value if chunks[verb].type in ("VERB", "TVERB") else None
+    says_nothing = group is not None and group.kind in ("other", "unknown") and group.lemma not in TRANSITIVE_RELATIONS
+    if not (lost or says_nothing):
+        return None
+    _leave_out(chunks[at + 1 : end], "this clause does not say where something is")
+    return end + 1 if goes_on else end, None
+
+
+def _leave_out(chunks: list[Chunk], reason: str) -> None:
+    """Report chunks that are left out."""
+    misunderstood((chunks[0].span[0], chunks[-1].span[1]), reason)
+
+
+def _measures_apart(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find how large the subject is, between commas: *a small tray, about a foot square, stands …*."""
+    if at != 1 or type_at(chunks, 0) != "NP" or type_at(chunks, at) != "COMMA":
+        return None
+    end = end_before(chunks, at + 1, _BREAKS)
+    inner = [chunk for chunk in chunks[at + 1 : end] if chunk.type != "ADVERB"]
+    sizes = {chunk.type for chunk in inner} <= {"NP", "ADJP", "AND", "MEASURE"} and bool(inner)
+    if not sizes or type_at(chunks, end) != "COMMA" or type_at(chunks, end + 1) not in FINITE:
+        return None
+    told = all(not _LENGTHS.isdisjoint(c.value.head.split()) for c in inner if c.type == "NP")
+    if not told:
+        return None
+    _leave_out(chunks[at + 1 : end], "a measure without 'is' is not read here")
+    return end + 1, None
 
 
 def _turn(chunks: list[Chunk], at: int) -> _Run | None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 from deixis.grammar.english.tokens import DOUBT
-from deixis.grammar.english.tree import Sentence
+from deixis.grammar.english.tree import Mood, Sentence
+from deixis.grammar.english.vocabulary.function_words import READY
 from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.verbs import SAYING
 
@@ -31,10 +32,23 @@ HABIT = re.compile(
 )
 """Words of what was done again and again, or at an earlier time."""
 WHILE_DOING = re.compile(
-    r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed)[a-z]+ing\b[^,]*,",
+    r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed"
+    r"|(?:setting|laying|arranging|preparing|packing|assembling|building|installing|placing|positioning|organi[sz]ing"
+    r"|styling|decorating)\b)[a-z]+ing\b[^,]*,",
     re.IGNORECASE,
 )
-"""Condition at the beginning of a sentence: *when driving, …*; what tells a viewpoint is not one."""
+"""Condition at the beginning of a sentence: *when driving, …*.
+
+What tells a viewpoint is not one, and neither is the arranging that the text is about: *when setting a table, …*.
+"""
+_IN_STATE = re.compile(
+    r"\s*(?:when|while|whenever)\s+((?:not\s+)?(?:(?:in|on|at|under|out\s+of)\s+[a-z]+|[a-z]+(?<!ing)(?<!\bseen)(?<!\bviewed)"
+    r"(?:\s+(?:and|or)\s+[a-z]+)?))\s*,",
+    re.IGNORECASE,
+)
+"""State at the beginning of a sentence, in which alone it holds: *when wet, …*, *when not in use, …*."""
+_IN_ORDER = re.compile(r"\s*(?:before|after)\b", re.IGNORECASE)
+"""Beginning of a step that follows or precedes another one."""
 CONDITION = re.compile(
     r"\s*(?:if(?!\s+you\s+(?:look|peek|peep|peer|open|lift)\b[^,]*,\s*you\b)|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
     r"(?:as|so)\s+long\s+as|(?:only|even)\s+if|on\s+condition|depending\s+on)\b"
@@ -84,7 +98,8 @@ UNREAL = re.compile(
     r"|\b(?:far|further|farther)\s+from\s+(?:the\s+)?(?:truth|true)\b"
     r"|\b(?:you|one|we|i)(?:['\u2019]d|\s+would)\s+(?:expect|think|believe|swear|suppose)\b"
     r"|(?:['\u2019]d|\bwould)\s+(?:have|like|want|prefer)\s+(?:you|us|me|him|her|them|people|everyone|the|a|an)\b"
-    r"|\b(?:stop|prevent|save|discourage|hinder|protect)(?:s|ed|ing)?\s+(?:[\w'\u2019]+\s+){1,4}?from\s+\w+ing\b"
+    r"|(?<!\bto\s)\b(?:stop|prevent|save|discourage|hinder|protect)(?:s|ed|ing)?\s+(?:[\w'\u2019]+\s+){1,4}?from\s+\w+ing\b"
+    r"|\b(?:stop|prevent)\s+(?:[\w'\u2019]+\s+){1,4}?from\s+(?:stand|sitt|ly|hang|rest|lean|be|go|touch|stay|land)ing\b"
     r"|\beither\s+(?:[\w'\u2019]+\s+){1,4}?(?:is|are|stands?|lies?|goes|sits?|hangs?)\s[^.;]*\bor\s+(?:else\s+)?"
     r"(?:it|they|he|she|we|i|you|some\s?(?:body|one)|the|an?|my|his|her|our|their)\b"
     r"|\blet(?:['\u2019]s|\s+us)\s+(?:hope|say|suppose|assume|pretend|imagine)\b"
@@ -105,6 +120,7 @@ UNREAL = re.compile(
     r"|\binsist(?:s|ed)?\s+(?:up)?on\b|\byou['\u2019]ll\s+be\s+(?:telling|saying)\b|\bis\s+the\s+least\b"
     r"|\bthe\s+(?:author|painter|artist|playwright|novelist|poet|director|engraver)\s+(?:has|had|puts|places|shows)\b"
     r"|,\s*an?\s+(?:error|mistake|slip|misprint)\b"
+    r"|\bwhich\s+(?:i|we)\s+(?:doubt|deny|(?:do\s+not|don['\u2019]t)\s+(?:believe|think))\b"
     r"|\bnothing\s+like\s+(?:as|so)\b"
     r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
     r"|\b(?:theory|theories|story|map|guidebook|article|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
@@ -217,8 +233,14 @@ def condition_of(sentence: Sentence) -> str | None:
     str or None
         Text of the condition with single spaces, or None for a sentence that does not begin with one.
     """
+    in_state = _IN_STATE.match(sentence.text)
+    commanded = any(clause.mood is Mood.COMMAND for clause in sentence.clauses)
+    if in_state is not None and not (commanded and in_state[1].casefold() in READY):
+        return " ".join(in_state[0].strip(" ,").split())
     if DOUBT.match(sentence.text) or not (WHILE_DOING.match(sentence.text) or CONDITION.match(sentence.text)):
         return None
+    if commanded and _IN_ORDER.match(sentence.text):
+        return None  # 'after washing the cups, put them on the shelf'
     return " ".join(sentence.text.split(",", 1)[0].split())
 
 

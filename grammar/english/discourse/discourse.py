@@ -82,6 +82,9 @@ CONTRARY = re.compile(r"\b(?:but|instead|actually|yet|however|in fact)\b")
 MAX_BETWEEN_CLAUSES = 40
 """Number of characters between two clauses that are contrasted."""
 
+_INSTEAD = re.compile(r"\b(?:instead\s+of|rather\s+than)\b", re.IGNORECASE)
+"""Words before a place that another one stands for."""
+
 _NO_PERSON = re.compile(r"no(?:body|[ -]one)", re.IGNORECASE)
 """Subjects by which a person, and no thing, is not somewhere."""
 
@@ -211,7 +214,9 @@ class Discourse(Statements):
             if not part.predicates:
                 waiting.append(part)
                 continue
-            joined = bool(waiting) and len(listed) > 2 and self._joined_to(waiting[-1], part)
+            joined = bool(waiting) and self._joined_to(waiting[-1], part)
+            plurals = joined and part.plural and waiting[-1].plural and part.determiner is None
+            joined = joined and (len(listed) > 2 or plurals)  # 'knives and spoons right of the plate'
             sharing = len(waiting) if joined and not placed else int(joined)  # all of 'lemons, limes and a knife on it'
             yield from waiting[: len(waiting) - sharing]
             if sharing:
@@ -251,6 +256,13 @@ class Discourse(Statements):
             self._ask_about(clause.subject)
             return
         modal = clause.modal
+        denied = tuple(p for p in clause.predicates if not p.positive)
+        if modal in UNCERTAIN and clause.positive and 0 < len(denied) < len(clause.predicates):
+            affirmed = tuple(p for p in clause.predicates if p.positive)  # 'it may stand behind the box, not on it'
+            self._clause(replace(clause, predicates=affirmed), sentence)
+            if _INSTEAD.search(self.text[slice(*clause.span)]) is None:  # which denies nothing of what may be
+                self._clause(replace(clause, predicates=denied, choices=()), sentence)
+            return
         weight = min([self.hedges.get(word, 1.0) for word in clause.hedges] or [1.0])
         positive = clause.positive and all(p.positive for p in clause.predicates)
         if modal in NOT_NEEDED and not positive:

@@ -12,6 +12,7 @@ from deixis.grammar.english.discourse.surfaces import surface_noun
 from deixis.grammar.english.tree import Mood, NounPhrase, Predicate, Sentence, Span
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
 from deixis.grammar.english.vocabulary.nouns import HEADED, PEOPLE, last_word
+from deixis.grammar.english.vocabulary.things import can_have_a_place
 from deixis.ontology.graph.claims import COLLECTIVE
 
 MIN_PAST_OF_STORY = 3
@@ -124,6 +125,12 @@ class Drafting:
         if relation == "at":
             relation = "near"
         how = how or self.how
+        nameless = [leaf for s in subjects for leaf in s.leaves() if self._is_no_thing(leaf)]
+        named = [leaf for s in subjects for leaf in s.leaves() if leaf not in nameless] if nameless else []
+        if nameless and named and relation not in COLLECTIVE:  # 'the knife and the order are on the tray'
+            for part in (named, nameless):
+                self._add(relation, tuple(part), arguments, value, metres, how)
+            return
         if relation in ("pointing", "facing"):
             turned = TURNED_AWAY.search(self.text[slice(*how.span)]) is not None
             if turned and value == "viewer":
@@ -140,6 +147,8 @@ class Drafting:
             how = replace(how, guesses=how.guesses | close)
         if any(self._may_be_a_list(entity) for entity in (*subjects, *arguments)):
             how = replace(how, guesses=how.guesses | {Guess.STRANGE})
+        if nameless or any(self._is_no_thing(leaf) for entity in arguments for leaf in entity.leaves()):
+            how = replace(how, guesses=how.guesses | {Guess.NO_THING})
         if is_doubtful(how.guesses):
             how = replace(how, uncertain=True, optional=True, weight=min(how.weight, 0.5))
         draft = Draft(relation, subjects, arguments, how, value, metres)
@@ -153,6 +162,10 @@ class Drafting:
         if entity.role is not Role.THING or len(words) < MIN_WORDS_OF_LISTS or self.nouns.knows(entity.noun):
             return False
         return any(self.nouns.singular(word)[1] for word in words[:-1])
+
+    def _is_no_thing(self, entity: Entity) -> bool:
+        """Return True for an object whose name says that it is a quality, an act, a time, or a piece of a clause."""
+        return entity.role is Role.THING and not can_have_a_place(entity.noun, self.nouns)
 
     def _compare(self, relation: str, subject: Entity, other: Entity, phrase: NounPhrase) -> None:
         how = Qualification(phrase.span, self.references.sentence)

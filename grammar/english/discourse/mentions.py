@@ -19,6 +19,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PLACES_OF,
     SUBSTANCES,
     SURFACES,
+    SURROUNDINGS,
     VESSELS,
     VIEWER_WORDS,
     last_word,
@@ -59,10 +60,16 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     flat = noun in ("wall", "ceiling") and all(
         p.relation in DIRECTIONS | {"next_to", "near"} for p in phrase.predicates
     )
+    ends = [one for p in phrase.predicates for a in p.arguments for one in (a.members or (a,))]
+    on_it = entity.role is Role.SURFACE and all(p.relation in _BESIDE | {"above", "below"} for p in phrase.predicates)
+    on_it = on_it and beside and all(a.head and last_word(a.head) not in SURROUNDINGS for a in ends)
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
     own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
     stuff = noun in SUBSTANCES and phrase.determiner is None and phrase.owner is None  # 'in water behind the counter'
-    return (around and bare) or (wide and (bare or beside)) or flat or amid or own or stuff
+    spots = noun in ("wall", "ceiling", "floor") and all(
+        p.relation in PLACES and not p.arguments and not p.reversed for p in phrase.predicates
+    )  # 'on the wall in the corner'
+    return (around and bare) or on_it or spots or (wide and (bare or beside)) or flat or amid or own or stuff
 
 
 COMPARTMENTS = frozenset(
@@ -257,6 +264,8 @@ class Mentions(Drafting, ABC):
             self.how = replace(self.how, quantifier="each")
         outer = self.how
         places = {p.part for p in predicates if p.relation in ("part", "edge") and not p.arguments and p.part}
+        if any(p.relation == "row" for p in predicates):  # 'from left to right across the stage are …'
+            predicates = tuple(p for p in predicates if p.relation != "across")
         for predicate in predicates:
             if predicate.relation == "there" and self.text[predicate.span[1] :].lstrip().casefold().startswith("but "):
                 outer = replace(outer, positive=False)  # everywhere but left of the plate

@@ -68,9 +68,12 @@ OPPOSITES = {
 }  # fmt: skip
 _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
+_LASTING = frozenset({"colour", "material", "contents", "ordinal"})
+"""Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
-_FURTHER = re.compile(r"^.{0,12}\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
+_COMPASS = frozenset({"north", "south", "east", "west"})
+_FURTHER = re.compile(r"\b(?:more|additional|extra)\s+\w+$", re.IGNORECASE)
 """Words before other things of a kind than those before."""
 _SIDES = frozenset(
     ["side", "front", "back", "rear", "top", "bottom", "left", "right", "end", "middle", "upper", "lower"]
@@ -169,6 +172,7 @@ class References:
         if phrase.head != term and (phrase.count or 0) > 1 and phrase.of is None:
             return None  # 'two cigarette ends'
         words = [a.word for a in phrase.adjectives if a.dimension in ("position", "size", "length", "other")]
+        words += [word for word in phrase.head.split()[:-1] if word in _COMPASS]  # 'the north edge'
         of = self.find(phrase.of) if phrase.of is not None else None
         term = {"centre": "middle", "center": "middle", "midpoint": "middle", "rear": "back"}.get(term, term)
         if term in ("front", "back", "half", "part", "quadrant"):
@@ -245,7 +249,7 @@ class References:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
         several = several and not any(a.dimension == "colour" for a in phrase.adjectives)
-        if several and last in GENERAL and noun == last:
+        if several and last in GENERAL - {"piece"} and noun == last:
             return None  # 'the following items'
         if phrase.owner is not None:
             self.find(phrase.owner, relation, besides)
@@ -257,10 +261,10 @@ class References:
             (a.dimension, a.word)
             for a in phrase.adjectives
             if a.degree is Degree.PLAIN or a.dimension in ("position", "size", "height", "length")
-        }
+        } | _marks(phrase)
         own_end = min((p.span[0] for p in phrase.predicates if p.span[0] > phrase.span[0]), default=phrase.span[1])
         written = self.text[phrase.span[0] : own_end].casefold()
-        words = written.replace(",", " ").split()
+        words = re.sub(r"[,:;]", " ", written).split()
         count = phrase.count
         stem = last_word(phrase.head)
         amount = written.partition(" of ")[0].split()[-1:] if " of " in written and phrase.of is None else []
@@ -292,6 +296,10 @@ class References:
         words = self.words(phrase)
         entity.mention(words)
         entity.compared = False
+        if not entity.members and entity.group is None:
+            known = {dimension for dimension, _ in entity.adjectives}
+            plain = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN}
+            entity.adjectives |= {mark for mark in plain | _marks(phrase) if mark[0] in _LASTING - known}
         if entity.members and entity.noun:
             for leaf in entity.leaves():
                 leaf.mention(words)
@@ -351,10 +359,12 @@ class References:
         ):
             return None
         latest_first = self._named_like(phrase.head)
-        if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[1]]):
+        if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[0]] + self.words(phrase)):
             return None
         if any(a.word == "remaining" for a in phrase.adjectives):
             return self._remaining(phrase, latest_first)
+        if self._is_ambiguous(phrase, latest_first):
+            return None
         comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
         general = phrase.plural and phrase.determiner is None and phrase.owner is None and comparative
         if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
@@ -378,6 +388,9 @@ class References:
                 continue  # 'the two rails' after 'a rail'
             if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
+            kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
+            if kind and not (entity.members or entity.plural or entity.group is not None):
+                continue  # 'towels' after 'a towel'
             coloured = {("colour", a.word) for a in phrase.adjectives if a.dimension == "colour"}
             if coloured and entity.members and phrase.plural and not any(
                 coloured & leaf.adjectives for leaf in entity.leaves()
@@ -400,6 +413,13 @@ class References:
                 return self.member(entity, phrase) or entity
             return entity
         return None
+
+    def _is_ambiguous(self, phrase: NounPhrase, latest_first: list[Entity]) -> bool:
+        """Return True for *the plate* after *the butter plate* and *the side plate*, of which neither was called so."""
+        bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
+        named = [e for e in latest_first if _can_name(phrase.head, e) and not e.compared]
+        longer = {e.noun for e in named if e.noun != phrase.head and not e.was_called(phrase.head)}
+        return bare and not phrase.predicates and len(longer) > 1 and len(named) == len(longer)
 
     def _carrier(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
         """Return the subject that a thing lies on: *the bread plate is here, with a knife across the plate*."""
@@ -595,7 +615,12 @@ class References:
             return chosen
         if word in ("he", "she") and relation is not None:
             named = (e for f in self.recent for e in (f.subject, *f.others) if e is not None and e is not besides)
-            return next((entity for entity in named if entity.role is Role.PERSON), None)
+            persons = [entity for entity in self.entities if entity.role is Role.PERSON]
+            only = persons if len(persons) == 1 else []
+            last = self.recent[0].subject if self.recent and self.recent[0].sentence == self.sentence else None
+            thing = last if last is not None and last.role is Role.THING and last is not besides else None
+            found = next((entity for entity in named if entity.role is Role.PERSON), None)
+            return found or thing or next(iter(only), None)  # 'Joseph stands there with a donkey beside him'
         if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None
@@ -940,7 +965,7 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
     """
     distinguishing = {
         (a.dimension, a.word) for a in phrase.adjectives
-        if a.dimension in ("position", "colour") and a.degree is Degree.PLAIN
+        if a.dimension in ("position", "colour", "material", "size") and a.degree is Degree.PLAIN
     }  # fmt: skip
     longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
     if (
@@ -964,9 +989,23 @@ def _agreement(entity: Entity, phrase: NounPhrase) -> int:
     return several + sum((a.dimension, a.word) in entity.adjectives for a in phrase.adjectives)
 
 
+def _marks(phrase: NounPhrase) -> set[tuple[str, str]]:
+    """Return what tells a thing from others of its noun: *bowl of rice*, *second row from the bottom*."""
+    of = phrase.of
+    filled = of is not None and bool(of.head) and of.determiner is None and of.owner is None
+    marks = {("contents", of.head)} if of is not None and filled and last_word(phrase.head) not in PARTS else set()
+    for predicate in phrase.predicates:
+        if predicate.relation == "ordinal" and predicate.value is not None and not predicate.reversed:
+            marks.add(("ordinal", f"{predicate.value.rank} from {predicate.part}"))
+    return marks
+
+
 def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:
     if entity.members:
         return False
+    told = dict(_marks(phrase))
+    if any(told.get(dimension, word) != word for dimension, word in entity.adjectives):
+        return True
     for adjective in phrase.adjectives:
         words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
         if adjective.dimension in ("colour", "material", "position", "rank") and words and adjective.word not in words:

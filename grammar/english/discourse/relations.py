@@ -10,8 +10,16 @@ from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.mentions import Mentions
 from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS, HOLLOW_SURFACES
-from deixis.grammar.english.tree import Degree, Predicate
-from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, VIEWER_WORDS, last_word
+from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.vocabulary.nouns import (
+    HOLDERS,
+    PEOPLE,
+    SUBSTANCES,
+    SURFACES,
+    VESSELS,
+    VIEWER_WORDS,
+    last_word,
+)
 from deixis.grammar.english.vocabulary.relation_words import prepositions
 from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
@@ -59,7 +67,12 @@ SUPPORTS = frozenset(
 )
 
 
-_OF_SEVERAL = frozenset({"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"})
+_OUTER = frozenset({"top", "rim", "edge", "brim"})
+"""Parts of a thing that another one lies across."""
+
+_OF_SEVERAL = frozenset(
+    {"circle", "near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"}
+)
 """Relations of several things together."""
 
 _MUTUAL = {"next_to": "near", "against": "touching"}
@@ -137,6 +150,10 @@ class Relations(Mentions):
             if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
                 found.append(last)  # above the saucer and to the left of it
                 continue
+            host = self._host_of(phrase, relation, subject)
+            if host is not None:
+                found.append(host)
+                continue
             for member in ([m for m in phrase.members if m.negated] and phrase.members) or (phrase,):
                 if member.negated:
                     other = self._argument(replace(member, negated=False), relation, subject)
@@ -206,6 +223,16 @@ class Relations(Mentions):
             return
         for other in entities:
             self._pair(subject, relation, other, predicate.reversed)
+
+    def _host_of(self, phrase: NounPhrase, relation: str, subject: Entity) -> Entity | None:
+        """Return the thing before, of which *the rim* is: *the plate is here, with a knife across the rim*."""
+        bare = phrase.determiner == "the" and not (phrase.of or phrase.owner or phrase.adjectives or phrase.plural)
+        last = self.references.recent[0] if self.references.recent else None
+        before = None if last is None or last.sentence != self.how.sentence else last.subject
+        host = self.references.host or before
+        if relation != "across" or phrase.head not in _OUTER or not bare or host is None or host is subject:
+            return None
+        return host.itself if host.role is Role.THING and not (host.itself.members or host.plural) else None
 
     def _holds(self, thing: Entity, subject: Entity) -> bool:
         """Return True if this sentence says that the subject is inside a thing, so that it cannot be beside it."""
@@ -352,8 +379,14 @@ class Relations(Mentions):
                     self._add("edge", (subject,), (), value=found.value)
                     self._add("middle", (subject,), (), value=f"{found.value or ''} edge".strip())
                     self.edge = found.value
-                return
-            if found is not None and found.role in (Role.THING, Role.SURROUNDING):
+                    return
+                self._at_region(subject, "on", found)  # 'at the left end of the front edge of the tray'
+                if predicate.relation == "middle":
+                    return  # of the side, and not of the whole
+                if found.of is not None and found.of.role is Role.THING:
+                    arguments.append(found.of)
+                continue
+            if isinstance(found, Entity) and found.role in (Role.THING, Role.SURROUNDING):
                 arguments.append(found)
         if not arguments and predicate.relation in ("end", "edge", "side", "corner") and predicate.part:
             before = [
@@ -373,6 +406,8 @@ class Relations(Mentions):
             for leaf, side in zip(subject.leaves(), ("left", "right"), strict=True):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
             return
+        if predicate.relation == "part" and not part and not arguments:
+            return  # 'in a position', which does not say where
         self._add(predicate.relation, (subject,), tuple(arguments), value=part)
         words = self.text[slice(*predicate.span)].casefold()
         within = words.startswith(("in the ", "inside the ")) and any(last_word(a.noun) in words for a in arguments)
@@ -425,6 +460,14 @@ class Relations(Mentions):
         if contrasted is not None:
             self._pair(subject, predicate.relation, contrasted, False)
             return
+        beside = self.drafts[-1] if self.drafts else None
+        person = beside is not None and not beside.arguments and beside.value in PEOPLE and beside.metres is None
+        turned = person and beside is not None and beside.relation == OPPOSITES.get(predicate.relation)
+        if turned and beside is not None and beside.how.sentence == self.how.sentence and predicate.part is None:
+            self._add(
+                predicate.relation, (subject,), (), value=beside.value
+            )  # 'A to the left of the host, B to the right'
+            return
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         high = self.text[slice(*predicate.span)].casefold().startswith(("up ", "high up", "at top"))
         if (
@@ -451,6 +494,7 @@ class Relations(Mentions):
                 last = same[-1].arguments[0]  # 'the bread plate above to the left, the glass above to the right'
             further = self.text[: predicate.span[0]].rstrip().casefold().endswith(("further", "farther"))
             here = before.sentence == self.how.sentence or further  # 'further to the right lie the tongs'
+            here = here or (opposite and before.sentence == self.how.sentence - 1)  # 'the fork to the left of it. …'
             self.how = self._guessed(Guess.OF_THE_LAST if here else Guess.OF_EARLIER)
             self._pair(subject, predicate.relation, last, False)
             if predicate.measure is not None and last.role is Role.THING:

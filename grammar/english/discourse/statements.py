@@ -51,9 +51,6 @@ FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire"
 
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 
-_TOWARDS = frozenset({"toward", "towards"})
-"""Prepositions by which a part of a thing faces a side, but a whole thing lies nearer to it."""
-
 
 class Statements(Relations):
     """Reader of predicates."""
@@ -81,9 +78,10 @@ class Statements(Relations):
             apart = predicate.arguments and relation not in ("inside", "on", "touching", "pointing", "facing")
             if relation == "upside_down" or (subject.noun in FLEXIBLE and (apart or relation in DIRECTIONS)):
                 return  # the label, and not the bottle; the cable, and not the lamp
+            denied = not (self.how.positive and predicate.positive)
+            if denied and relation not in ("pointing", "facing", "open", "closed"):
+                return  # what is denied of a part need not be so of the whole
             subject = subject.whole
-        elif relation == "facing" and predicate.subject_part is None and _TOWARDS & set(predicate.adverbs):
-            return  # 'in the middle towards the bottom'
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
@@ -111,7 +109,7 @@ class Statements(Relations):
             pair = self.references.last_two_subjects(subject)
             if pair is not None:
                 self._between(subject, [pair])  # 'a cup on the left, a jug on the right, and in between a pot'
-        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far", "around")):
+        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far", "around", "next_to")):
             self._bare_direction(subject, predicate)
         else:
             self._relate(subject, predicate, others)

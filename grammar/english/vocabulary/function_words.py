@@ -168,6 +168,7 @@ UNITS = {
     "yards": 0.9144,
     "handbreadth": 0.1,
     "finger": 0.02,
+    "knuckle": 0.025,
     "hand": 0.1,
     "thumb": 0.02,
     "palm": 0.08,
@@ -232,6 +233,9 @@ ADVERBS = word_set(
     " dead bang smack slap ever least most more less super extremely overnight"
     " later soon finally twice thrice"
 )
+
+READY = word_set("cool dry ready cold warm hot firm done full set finished complete assembled level straight")
+"""Words for a thing with which a step is finished: *when cool, put it on the tray*."""
 
 DEGREE_ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"

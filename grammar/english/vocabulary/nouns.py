@@ -48,6 +48,7 @@ PEOPLE = frozenset(
     [
         "person",
         "people",
+        "individual",
         "guest",
         "diner",
         "inspector",

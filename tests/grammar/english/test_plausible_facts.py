@@ -1,0 +1,227 @@
+"""Facts of instructions that a careful reader takes from them, and facts that no reader would take."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.grammar.english.reader import read_english
+from deixis.grammar.english.vocabulary.known_nouns import known_nouns
+from deixis.grammar.english.vocabulary.things import can_have_a_place
+from deixis.grammar.errors import ScriptError
+from deixis.grammar.reading import Reading
+from deixis.ontology.tbox import default_ontology
+
+
+def read(text: str) -> Reading:
+    reading = read_english(text).reading
+    assert reading is not None
+    return reading
+
+
+def asserted(text: str) -> list[str]:
+    """Return the places that a text asserts, without counts, colours and contents."""
+    minor = ("count(", "colour(", "size(", "material(", "contents(", "kind(", "shape(")
+    return [str(f.content) for f in read(text).stated if f.asserted and not str(f.content).startswith(minor)]
+
+
+@pytest.mark.parametrize(
+    "noun",
+    ["eye level", "location", "left", "preparation", "elegance", "moss layer adds", "six inches", "buffet style",
+     "guest carefully slides", "three o'clock", "type", "start"],
+)  # fmt: skip
+def test_words_for_no_thing_have_no_place(noun: str) -> None:
+    assert not can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+@pytest.mark.parametrize(
+    "noun",
+    ["censer", "panel a", "arrangement", "instrument stand", "price tag", "butterfly net", "time switch",
+     "spirit level", "watering can", "station", "goods basket", "step stool", "bookcase", "law book"],
+)  # fmt: skip
+def test_words_for_things_have_places(noun: str) -> None:
+    assert can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+def test_facts_of_what_is_no_thing_are_reported() -> None:
+    reading = read("The jug stands behind the cup. The jug stands above eye level. The plates are near the jug.")
+    assert [str(f.content) for f in reading.stated if f.asserted] == ["behind(jug, cup)", "near(plates, jug)"]
+    (problem, *_) = reading.sentences[1].problems
+    assert "not the name of a thing" in problem.message
+
+
+def test_things_among_others_keep_their_places() -> None:
+    assert asserted("The knife and the preparation are behind the cup.") == ["behind(knife, cup)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The bowl of rice is left of the cup. The bowl of soup is right of the cup.",
+         ["left(bowl_1, cup)", "right(bowl_2, cup)"]),
+        ("The bowl of rice is left of the cup. The bowl is near the jug.", ["left(bowl, cup)", "near(bowl, jug)"]),
+        ("Put the pins along the second row from the bottom, and the nails in the second row from the top.",
+         ["ordinal(row_1, '2 from bottom')", "along(pins, row_1)", "ordinal(row_2, '2 from top')",
+          "inside(nails, row_2)"]),
+        ("The queen stands on the box. The white queen is near the cup. The black queen is near the jug.",
+         ["on(white_queen, box)", "near(white_queen, cup)", "near(black_queen, jug)"]),
+        ("The plates are behind the cup. Extra plates (small, deep) are on the box.",
+         ["behind(plates_1, cup)", "on(plates_2, box)"]),
+    ],
+)  # fmt: skip
+def test_contents_order_and_colour_tell_things_apart(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The knife is on the plate, with the blade facing left.", ["on(knife, plate)", "facing(knife, 'left')"]),
+        ("The jug stands behind the cup, not on the box or in front of the pot.",
+         ["behind(jug, cup)", "not on(jug, box)", "not in_front(jug, pot)"]),
+        ("The napkin goes on the plate or to the left of the fork, but never under the plate.",
+         ["on(napkin, plate)", "not under(napkin, plate)", "left(napkin, fork)"]),
+        ("The jug stands behind the cup, not high above it.", ["behind(jug, cup)", "not above(jug, cup)"]),
+        ("The jug is on the opposite side of the plate from the cup.", ["opposite(jug, cup)"]),
+        ("The jug is on the other side of the table. The cup is on the table.", ["side(jug, 'other')", "on(cup)"]),
+        ("Put the cup at the left end of the front edge of the box.",
+         ["edge(cup, box, 'front')", "end(cup, box, 'left')"]),
+        ("Put the cup in the middle of the right side of the box.", ["side(cup, box, 'right')"]),
+        ("Put the label on the back side of the box.", ["part(label, box, 'back')"]),
+        ("Put the plates at the start of the line.", ["end(plates, line, 'start')"]),
+        ("A plate is placed on the table over the forks. The cup is on the table.",
+         ["above(plate, forks)", "on(plate)", "on(cup)"]),
+        ("Trays stand in front of the individual.", ["in_front(trays, 'individual')"]),
+    ],
+)  # fmt: skip
+def test_places_of_arrangements(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The candle, which represents fire, stands behind the bowl.", ["behind(candle, bowl)"]),
+        ("Put the candle behind the bowl, which represents water.", ["behind(candle, bowl)"]),
+        ("The tray, which holds a cup, stands behind the jug.", ["on(cup, tray)", "behind(tray, jug)"]),
+        ("A small tray, about a foot square, stands behind the jug.", ["behind(tray, jug)"]),
+        ("A small tray, 30 cm long and standing six inches high, is behind the jug.", ["behind(tray, jug)"]),
+        ("The fork lies left of the plate (and the spoon above it, if you serve soup).", ["left(fork, plate)"]),
+        ("The fork lies left of the plate (if you serve soup, the spoon is above it).", ["left(fork, plate)"]),
+        ("The fork lies left of the plate (if it is used).", []),
+        ("The fork is left of the plate. (the dessert spoon sits above the plate) If you serve soup, turn it.",
+         ["left(fork, plate)", "above(dessert_spoon, plate)"]),
+    ],
+)  # fmt: skip
+def test_asides_leave_the_places_of_their_sentence(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The harp is behind the drums, with the flutes and bells on the left and the oboes and gongs on the right.",
+         ["behind(harp, drums)", "part(flutes, 'left')", "part(bells, 'left')", "part(oboes, 'right')",
+          "part(gongs, 'right')"]),
+        ("From left to right across the stage are the violins and the cellos.",
+         ["row(violins, cellos, 'left to right')"]),
+        ("Put the pan on the box, placing the lid next to it.", ["on(pan, box)", "next_to(lid, pan)"]),
+        ("Peas: plant behind the box.", ["behind(peas, box)"]),
+        ("Tea pot: a vessel for brewing, usually placed behind the box.", ["behind(tea_pot, box)"]),
+        ("Mug: a pen and a ruler. The jug is behind the box.",
+         ["inside(pen, mug)", "inside(ruler, mug)", "behind(jug, box)"]),
+        ("Put a towel on the box. Towels are behind the jug.", ["on(towel, box)", "behind(towels, jug)"]),
+        ("The chopsticks lie between the jug and the bowls of rice and soup.", ["between(chopsticks, jug, bowls)"]),
+        ("A picture is on the wall in the corner.", ["corner(picture)", "on(picture, wall)"]),
+        ("The bell hangs at eye level behind the jug.", ["behind(bell, jug)"]),
+        ("Put a towel under the board to prevent the board from slipping.", ["under(towel, board)"]),
+    ],
+)  # fmt: skip
+def test_things_of_orchestras_kitchens_and_rooms(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("When setting up a desk, place a towel beneath the board.", ["under(towel, board)"]),
+        ("After washing the cups, put them on the box.", ["on(cups, box)"]),
+        ("When cool, push the rice behind the box.", ["behind(rice, box)"]),
+        ("When serving soup, put the spoon behind the box.", []),
+        ("When wet, the cup stands behind the box.", []),
+        ("When not in use, the cup stands behind the box.", []),
+        ("When you face the door, the cup is behind the box.", ["behind(cup, box)"]),
+        ("Before leaving, the key hangs behind the box.", []),
+        ("The cup may be behind the jug and the pot behind the box.", []),
+        ("The cup should be behind the jug and the pot behind the box.", ["behind(cup, jug)", "behind(pot, box)"]),
+        ("Prevent the cup from standing behind the box.", []),
+        ("Take a step back from the box.", []),
+        ("The cup, which I doubt, is behind the box.", []),
+        ("Move the cup by keeping both hands around the box.", []),
+    ],
+)  # fmt: skip
+def test_time_and_manner_of_steps(text: str, expected: list[str]) -> None:
+    try:
+        assert asserted(text) == expected
+    except ScriptError:
+        assert expected == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("In a buffet style setting the forks are set near the napkins.", ["near(forks, napkins)"]),
+        ("In a formal setting there may be a fork behind the spoon. The cup is behind the jug.", ["behind(cup, jug)"]),
+        ("The cup is next to the jug, and a pen lies alongside.", ["next_to(cup, jug)", "next_to(pen, cup)"]),
+        ("Put the peas along the north edge of the box.", ["edge(peas, box, 'north')"]),
+        ("The horns are on the conductor's left. The other brass is on his right.",
+         ["left(horns, 'conductor')", "right(brass, 'conductor')"]),
+        ("The drum may be behind the cup instead of behind the box.", []),
+        ("The drum may be behind the cup, but not behind the box.", ["not behind(drum, box)"]),
+    ],
+)  # fmt: skip
+def test_settings_sides_and_what_may_be(text: str, expected: list[str]) -> None:
+    try:
+        assert asserted(text) == expected
+    except ScriptError:
+        assert expected == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The butter plate is behind the cup. The dinner plate is behind the jug. The fork is left of the plate.",
+         ["behind(butter_plate, cup)", "behind(dinner_plate, jug)", "left(fork, plate)"]),
+        ("The dinner plate is behind the cup. The fork is left of the plate.",
+         ["behind(dinner_plate, cup)", "left(fork, dinner_plate)"]),
+        ("The string section is behind the drums. The brass section is behind the harp.",
+         ["behind(string_section, drums)", "behind(section, harp)"]),
+        ("The plate is behind the cup, with a knife across the rim.", ["behind(plate, cup)", "across(knife, plate)"]),
+        ("Put a fork to the left of the plate. The spoon and knife are placed to the right.",
+         ["left(fork, plate)", "right(spoon, plate)", "right(knife, plate)"]),
+        ("Put the pawns in front of the pieces.", ["in_front(pawns, pieces)"]),
+        ("Place a towel under the board to keep it from sliding on the box.", ["under(towel, board)"]),
+        ("The plate is behind the cup, with a fork on the left and a knife and spoon on the right.",
+         ["behind(plate, cup)", "part(fork, 'left')", "part(knife, 'right')", "part(spoon, 'right')"]),
+        ("The essential thing stands behind the box. The cup is on the box.", ["on(cup, box)"]),
+    ],
+)  # fmt: skip
+def test_which_things_and_sides_are_meant(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Always face the sofa toward the box.", ["facing(sofa, box)"]),
+        ("Mary sits or kneels to the left of the crib.", ["left(mary, crib)"]),
+        ("Knives and spoons at right of plate.", ["right(knives, plate)", "right(spoons, plate)"]),
+        ("Do not place the right side of the desk against a box. The cup is on the box.", ["on(cup, box)"]),
+        ("The bowl should have a cloth across the top. The bowl is on the box.",
+         ["across(cloth, bowl)", "on(bowl, box)"]),
+        ("The lamp belongs in a position. The cup is on the box.", ["on(cup, box)"]),
+        ("Joseph stands to the right of the crib, often with a donkey beside him.",
+         ["right(joseph, crib)", "next_to(donkey, joseph)"]),
+    ],
+)  # fmt: skip
+def test_postures_and_persons(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
