@@ -108,6 +108,9 @@ mean likeness of their colours in any light."""
 PART_LIKENESS = 0.9
 """Least mean likeness of the colours of two parts of one thing in any light; they differ by the noise of the sensor."""
 
+MAX_TABLE_SHARE = 0.6
+"""Largest share of the points of a detected object that may be the table's."""
+
 REVEALED = 0.5
 """Least share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
 
@@ -382,11 +385,24 @@ class Tracker:
         self, found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, id: str, slot: int, at: float
     ) -> Pipeline:
         assert self._frame is not None
+        points = self._without_table(cloud, points)
         change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
         model = model_of(found, cloud, points, k, change, self.settings.detection.outlines)
         made = Pipeline(id, slot, model.cloud, model.half, model.oriented, model.pose, at, self.settings)
         made.rest = next(self._rests)
         return made
+
+    def _without_table(self, cloud: PointCloud, points: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Return the points of a detected object that do not show the table beside it, as between the tines of a fork.
+
+        These are as low as the table and have its colours; an object of which little else is left keeps all.
+        """
+        assert self._frame is not None
+        if cloud.colours is None:
+            return points
+        heights = cloud.points[points] @ self._frame[2, :3] + self._frame[2, 3]
+        low = (heights < self.settings.tolerance) & self._colours.include(cloud.colours[points].astype(np.float32))
+        return points[~low] if low.mean() < MAX_TABLE_SHARE else points
 
     # Looks at the whole table
 
@@ -564,11 +580,17 @@ class Tracker:
     def _matches(
         self, of: NDArray[np.int32], count: int, image: FrameImage, things: list[Pipeline]
     ) -> dict[int, Pipeline]:
-        """Return which of the things each detected object is, by the pixels that both have."""
+        """Return which of the things each detected object is, by the pixels that both have.
+
+        Pixels beside each other count: a moving camera shows thin things a pixel beside where they were.
+        """
+        from scipy.ndimage import binary_dilation
         from scipy.optimize import linear_sum_assignment
 
         assert self._reference is not None
-        shared = np.zeros((count, len(things)))
+        shared, square = np.zeros((count, len(things))), np.ones((3, 3))
+        around = [binary_dilation(of == k, square) for k in range(count)]
+        sizes = np.bincount(of[of >= 0], minlength=count)
         above = np.flatnonzero(of >= 0)
         points = image.places(above, self._back)
         for column, thing in enumerate(things):
@@ -577,8 +599,9 @@ class Tracker:
                 own = self._reference.owner == thing.slot
             elif thing.found:
                 own.ravel()[above] = thing.contains(points, self.settings.margin)
-            both = np.bincount(of[own & (of >= 0)], minlength=count)
-            shared[:, column] = both / np.maximum(np.bincount(of[of >= 0], minlength=count) + own.sum() - both, 1)
+            near = binary_dilation(own, square)
+            both = np.array([near[of == k].sum() + around[k][own].sum() for k in range(count)]) / 2
+            shared[:, column] = both / np.maximum(sizes + own.sum() - both, 1)
         pairs = zip(*linear_sum_assignment(-shared), strict=True)
         return {int(k): things[column] for k, column in pairs if shared[k, column] >= SAME_PIXELS}
 
@@ -589,6 +612,7 @@ class Tracker:
         """
         assert self._last is not None and self._view is not None
         if not thing.active:
+            new.rest = thing.rest
             points = thing.placed_points
             hidden = self._view.hides(points, self._last[1].depth, MIN_BEFORE)
             if hidden.any() and thing.cloud.colours is not None:

@@ -397,6 +397,51 @@ class Pipeline:
         noise
             Standard deviation of depths at one metre.
         """
+        if self.seen_at_place(image, view, taken, noise)[1] < MIN_ALIGNED:
+            return
+        pose, gain = self._shifted(self.pose, image, view, taken, own, noise)
+        if gain > MIN_BETTER:
+            self.pose = self._rest = pose
+            self._filter.reset(pose)
+
+    def laid(
+        self,
+        start: NDArray[np.float64],
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        own: NDArray[np.float64],
+        noise: float,
+    ) -> tuple[NDArray[np.float64], float, float]:
+        """Return the best pose of the thing around another one, from which it moves along the table and turns about z.
+
+        Parameters
+        ----------
+        start
+            Pose (4, 4) in which it lies on the table.
+        image, view, taken, own, noise
+            As in :meth:`align`.
+
+        Returns
+        -------
+        tuple
+            The pose, the share of the points that agree, of those that nothing hides, and the share that agrees, of
+            those within the image.
+        """
+        pose, _ = self._shifted(start, image, view, taken, own, noise)
+        inliers, exposed, inside = self._seen(pose[:3, 3], _quaternion(pose), image, view, taken, noise)
+        return pose, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
+
+    def _shifted(
+        self,
+        start: NDArray[np.float64],
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        own: NDArray[np.float64],
+        noise: float,
+    ) -> tuple[NDArray[np.float64], float]:
+        """Return the best pose that is shifted along the table and turned about z from another, and its gain of score."""
         from deixis.perception.tracking.kernels import covered
 
         own = own[np.linspace(0, len(own) - 1, min(len(own), self.settings.particles.points)).astype(np.int64)]
@@ -409,27 +454,23 @@ class Pipeline:
             found += covered(places, turns, own, centre, self.oriented.yaw, half)
             return found
 
-        if self.seen_at_place(image, view, taken, noise)[1] < MIN_ALIGNED:
-            return
-        moved, turned = np.zeros((1, 3)), _quaternion(self.pose)[None]
-        best = first = float(weigh(self.pose[None, :3, 3], turned)[0])
+        moved, turned = np.zeros((1, 3)), _quaternion(start)[None]
+        best = first = float(weigh(start[None, :3, 3], turned)[0])
         step, directions = np.array(ALIGN_STEP), np.array(list(itertools.product((-1, 0, 1), repeat=3)))
         while step[0] >= ALIGN_END:
             tried = moved + step * directions
-            places = self.pose[:3, 3] + np.column_stack([tried[:, :2], np.zeros(len(tried))])
+            places = start[:3, 3] + np.column_stack([tried[:, :2], np.zeros(len(tried))])
             scores = weigh(places, turned_by(np.outer(tried[:, 2], (0.0, 0.0, 1.0)), turned.repeat(len(tried), axis=0)))
             if scores.max() > best:
                 best, moved = float(scores.max()), tried[scores.argmax()][None]
             else:
                 step = step / 2
-        if best > first + MIN_BETTER:
-            x, y, angle = moved[0]
-            cosine, sine = np.cos(angle), np.sin(angle)
-            pose = self.pose.copy()
-            pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ pose[:3, :3]
-            pose[:2, 3] += x, y
-            self.pose = self._rest = pose
-            self._filter.reset(pose)
+        x, y, angle = moved[0]
+        cosine, sine = np.cos(angle), np.sin(angle)
+        pose = start.copy()
+        pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ pose[:3, :3]
+        pose[:2, 3] += x, y
+        return pose, best - first
 
     def likeness(self, tints: NDArray[np.float64], shade: float = SHADE_SPREAD) -> NDArray[np.float64]:
         """Return how well colours agree with those of the thing.

@@ -163,14 +163,16 @@ def test_work_grows_with_what_moves_and_ends_with_it() -> None:
     assert max(moving) == 1  # the plate rests, which costs nothing
     with Tracker(HALF) as tracker:
         needed: list[int] = []
-        kept: list[weakref.ref[Any]] = []
+        ever: list[weakref.ref[Any]] = []
         for frame in film([PLATE, MUG], [Rest(0.2), TakeAway("mug"), Rest(1.0)]).frames(3, scale=0.4):
             tracker.update(frame.cloud, frame.at)
             needed.append(tracker.particles)
-            kept = kept or [weakref.ref(thing) for thing in tracker._things]
+            ever += [weakref.ref(thing) for thing in tracker._things]
         assert needed[0] == 0 < max(needed) and needed[-1] == 0
         gc.collect()
-        assert [each() is None for each in kept] == [False, True], "the pipeline of the mug is freed with its memory"
+        kept = {each() for each in ever} - {None}
+        assert kept == set(tracker._things), "the pipeline of the mug is freed with its memory"
+        assert [thing.id for thing in tracker._things] == ["t1"]
         assert np.unique(tracker.owners()).tolist() == [-1, 0]
 
 
@@ -194,15 +196,19 @@ def table_without(count: int) -> PointCloud:
 def test_work_is_linear_in_what_left_and_ends_with_each(count: int) -> None:
     with Tracker(HALF) as tracker:
         assert len(tracker.update(table_without(0), 0.0).things) == len(MANY)
-        kept = {thing.id: weakref.ref(thing) for thing in tracker._things}
+        names, ever = {thing.id for thing in tracker._things}, [weakref.ref(thing) for thing in tracker._things]
         tracker.update(table_without(count), 0.2)
         each = [thing.particles for thing in tracker._things if thing.active]
         assert len(each) == count and tracker.particles == sum(each)
         assert all(150 <= particles <= 1200 for particles in each), "the work for each does not depend on the others"
-        went = [thing.id for at in (0.6, 1.1) for thing in tracker.update(table_without(count), at).went]
+        went = list[str]()
+        for at in (0.6, 1.1):
+            went += [thing.id for thing in tracker.update(table_without(count), at).went]
+            ever += [weakref.ref(thing) for thing in tracker._things]
         assert len(went) == count and tracker.particles == 0
         gc.collect()
-        assert {name for name, thing in kept.items() if thing() is None} == set(went)
+        assert {thing for each in ever if (thing := each()) is not None} == set(tracker._things)
+        assert {thing.id for thing in tracker._things} == names - set(went)
         assert len(np.unique(tracker.owners())) == 1 + len(MANY) - count, "their pixels are free"
 
 
@@ -241,7 +247,7 @@ def test_tries_count_only_when_no_hand_is_in_view(is_hand_in_view: bool) -> None
         image = image_of(frame.cloud, optics, HALF.stride)
         table = np.flatnonzero(reference.owner == TABLE)[:50]  # part of a thing that a hand is setting down
         tracker._hand_at = 0.5 if is_hand_in_view else 0.0
-        assert tracker._segment(frame.cloud, image, tracker._compare(image, 0.5), table, 0.5) == ()
+        assert tracker._segment(image, tracker._compare(image, 0.5), table, 0.5) == ()
         assert (reference.tries.ravel()[table] == (0 if is_hand_in_view else 1)).all()
 
 
