@@ -45,6 +45,7 @@ from deixis.perception.tracking.things.completion import (
 )
 from deixis.perception.tracking.things.fitting import Fit, fits
 from deixis.perception.tracking.things.hands import Hands
+from deixis.perception.tracking.things.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.things.model import model_of
 from deixis.perception.tracking.things.particles import Estimate
 from deixis.perception.tracking.things.pipeline import COLOURS, Pipeline, likeness
@@ -930,6 +931,10 @@ class Tracker:
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]
             thing.extend(reference.points(each, view), colours, limits.detection.outlines)
+        ends = hidden_lengths(thing, resting, reference, view)
+        if any(ends):
+            length, width, _ = thing.oriented.extents
+            thing.suppose(ends, *likely_length(length, width, length + sum(ends)))
         if merged:
             thing.take_name(merged, at)
         self._things = [other for other in self._things if other not in merged]

@@ -148,6 +148,7 @@ class Pipeline:
         self._velocity = np.zeros(3)
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
         self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
+        self._unseen, self._spread = (0.0, 0.0), 0.0  # supposed lengths beyond the two ends of the box, and their spread
 
     def _choose_points(self) -> None:
         """Choose the points of the thing that are compared with frames."""
@@ -637,6 +638,7 @@ class Pipeline:
         turn = self.pose[:3, :3]
         own = self.cloud.points.astype(np.float64) @ turn.T + self.pose[:3, 3]
         everything = np.concatenate([own, points])
+        ends = self._supposed_ends()
         circle = circle_around(everything) or circle_around(own)
         box = upright_box(everything, settings, circle)
         around = oriented_box(everything, settings, circle)
@@ -656,10 +658,41 @@ class Pipeline:
         )
         self.pose = self.pose.copy()
         self.pose[:3, 3] = middle
+        if any(self._unseen):  # they end where they were supposed to end
+            along, (first, last) = self._along_in_table(), self._supposed_ends(seen=True)
+            before, after = np.sort(ends @ along)
+            self._unseen = max(float(first @ along - before), 0.0), max(float(after - last @ along), 0.0)
+            self._spread = self._spread if any(self._unseen) else 0.0
         self._rest = self.pose
         self._middles.append((self.seen_at, self.pose[:3, 3]))
         self._choose_points()
         self._filter.reset(self.pose)
+
+    def suppose(self, ends: tuple[float, float], length: float, spread: float) -> None:
+        """Suppose that the thing goes on where something hides its ends, until more of it is seen.
+
+        Parameters
+        ----------
+        ends
+            Lengths in metres that may be hidden beyond the end against the long axis of the box and the one along it.
+        length, spread
+            Likely length of the whole thing and its standard deviation, in metres.
+        """
+        share = max(length - self.oriented.extents[0], 0.0) / max(sum(ends), 1e-9)
+        self._unseen, self._spread = (share * ends[0], share * ends[1]), spread
+
+    def _along_in_table(self) -> NDArray[np.float64]:
+        """Return the direction (3,) of the long axis of the box in the table's frame."""
+        along: NDArray[np.float64] = self.pose[:3, :3] @ turned_axes(self.oriented.yaw)[0]
+        return along
+
+    def _supposed_ends(self, seen: bool = False) -> NDArray[np.float64]:
+        """Return the middles (2, 3) of the ends of the thing, or of what is seen of it, in the table's frame."""
+        middle = self.pose[:3, :3] @ np.array(self.oriented.centre) + self.pose[:3, 3]
+        unseen = np.zeros(2) if seen else np.array(self._unseen)
+        reach = np.array([-1, 1]) * (self.oriented.extents[0] / 2 + unseen)
+        ends: NDArray[np.float64] = middle + reach[:, None] * self._along_in_table()
+        return ends
 
     def stand(self) -> None:
         """Extend the box of the thing down to the table, on which it stands with a hidden foot."""
@@ -785,12 +818,21 @@ class Pipeline:
         """
         turn = self.pose[:3, :3]
         yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
-        middle = self.pose[:3, :3] @ np.array(self.oriented.centre) + self.pose[:3, 3]
-        oriented = OrientedBox(tuple(middle.tolist()), self.oriented.yaw + yaw, self.oriented.extents)
+        along, (before, after) = turned_axes(self.oriented.yaw)[0], self._unseen
+        shift, more = (after - before) / 2 * along, before + after
+        length, width, height = self.oriented.extents
+        whole = OrientedBox(  # with what is supposed
+            tuple((np.array(self.oriented.centre) + shift).tolist()), self.oriented.yaw, (length + more, width, height)
+        )
+        pose = self.pose.copy()
+        pose[:3, 3] += turn @ shift
+        middle = turn @ np.array(whole.centre) + self.pose[:3, 3]
+        oriented = OrientedBox(tuple(middle.tolist()), whole.yaw + yaw, whole.extents)
         if np.trace(turn) > 1 + 2 * np.cos(np.deg2rad(3.0)):
-            box = np.stack([self.pose[:3, 3] - self.half, self.pose[:3, 3] + self.half])
+            half = self.half + np.abs(along) * more / 2
+            box = np.stack([pose[:3, 3] - half, pose[:3, 3] + half])
         else:
-            corners = self.oriented.corners @ turn.T + self.pose[:3, 3]
+            corners = whole.corners @ turn.T + self.pose[:3, 3]
             box = np.stack([corners.min(axis=0), corners.max(axis=0)])
         points = self.cloud.points @ turn.T.astype(np.float32) + self.pose[:3, 3].astype(np.float32)
         faded = 0.5 ** (max(at - self.seen_at, 0.0) / MEMORY_OF_THE_HIDDEN)
@@ -799,13 +841,14 @@ class Pipeline:
             box=box,
             oriented=oriented,
             cloud=PointCloud(points, self.cloud.colours),
-            pose=self.pose.copy(),
+            pose=pose,
             certainty=float(np.clip(self.agreement * faded, 0.01, 1.0)),
             since=at if self.active and self.found else self.since,
             first_seen=self.at,
             seen_at=self.seen_at,
             state=self.state,
             moving=self.active and self.found,
+            spread=self._spread / 2,
         )
 
 
