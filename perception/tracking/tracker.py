@@ -716,6 +716,9 @@ class Tracker:
     def _start(self, thing: Pipeline) -> None:
         """Let a thing move: its pixels are free."""
         assert self._reference is not None
+        for other in self._things:
+            if other is not thing and not other.active and other.lies_on(thing):
+                other.load_onto(thing)
         thing.active = True
         self._reference.take(thing.slot, thing.beneath, {other.slot for other in self._things if other is not thing})
         thing.beneath = None
@@ -723,7 +726,10 @@ class Tracker:
     def _follow(self, image: FrameImage, changes: Changes, at: float, seconds: float) -> None:
         """Look for the things that move, and for those whose places are mostly hidden."""
         assert self._reference is not None and self._view is not None
-        moving = [thing for thing in self._things if thing.active]
+        for thing in self._things:
+            if not thing.active and thing.seen_at < at and thing.is_carried_off(MIN_WAY):
+                self._start(thing)
+        moving = sorted((thing for thing in self._things if thing.active), key=lambda thing: -thing.reach)
         doubtful = [
             thing
             for thing in self._things
@@ -740,7 +746,10 @@ class Tracker:
         tints = image.colour.reshape(-1, 3)[free].astype(np.float64)
 
         def follow(thing: Pipeline) -> tuple[Pipeline, Estimate, float, float]:
-            taken = (same & (reference.owner != thing.slot)) | others
+            own = reference.owner == thing.slot
+            if thing.carrier is not None:  # which may have been given its pixels
+                own |= reference.owner == thing.carrier.slot
+            taken = (same & ~own) | others
             return thing, *thing.follow(image, view, taken, points, tints, seconds, self._noise)
 
         others = np.zeros(same.shape, np.bool_)
@@ -748,11 +757,13 @@ class Tracker:
             if not thing.found:
                 self._carry(thing)
         for thing, found, fit, visible in self._each(follow, moving):
+            if not thing.active:  # it was set down with what it lies on
+                continue
             if not self._is_certain(thing, found, fit, visible, at, seconds, points):
                 if self._is_back(thing, image, same, at):
                     self._claim(thing, image, changes)
                     continue
-                if thing.found:
+                if thing.found or thing.is_carried_off(MIN_WAY):
                     self._carry(thing)
                 if self._camera_moves(at) and not self._outline.beyond(thing.pose[None, :2, 3])[0]:
                     thing.out_of_view |= thing.is_leaving(view, seconds)
@@ -762,7 +773,9 @@ class Tracker:
             thing.visible = visible
             if thing.is_still(at) and (visible > 0.6 or at - self._hand_at > limits.still_for):
                 self._settle(thing)
-                self._claim(thing, image, changes)
+                loads = [load for load in moving if self._is_set_down_with(load, thing, image, same, at)]
+                for each in (thing, *loads):
+                    self._claim(each, image, changes)
         for thing in moving:  # what is theirs is not another thing that left its place unseen
             if thing.found:
                 others.ravel()[free[thing.contains(points, limits.margin)]] = True
@@ -829,8 +842,27 @@ class Tracker:
         taken = same & (self._reference.owner != thing.slot)
         return thing.seen_at_place(image, self._view, taken, self._noise, thing.last_rest)
 
+    def _is_set_down_with(
+        self, load: Pipeline, carrier: Pipeline, image: FrameImage, same: NDArray[np.bool_], at: float
+    ) -> bool:
+        """Let a thing that was not found rest on what carried it and was set down, if the frame does not deny it."""
+        assert self._reference is not None and self._view is not None
+        if not load.active or load.found or load.carrier is not carrier or not load.is_carried_off(MIN_WAY):
+            return False
+        load.ride()
+        taken = same & ~np.isin(self._reference.owner, (load.slot, carrier.slot))
+        agreement, exposed = load.seen_at_place(image, self._view, taken, self._noise)
+        if exposed > EXPOSED and agreement < ABSENT:
+            return False
+        load.moved_to(load.pose, at, agreement)
+        self._settle(load)
+        return True
+
     def _carry(self, thing: Pipeline) -> None:
-        """Move a thing that left its place and is not seen with the hand that may hold it."""
+        """Move a thing that left its place and is not seen with what it lay on, or with the hand that may hold it."""
+        if thing.is_carried_off(MIN_WAY):
+            thing.ride()
+            return
         step = self._hands.carried(thing.pose[:3, 3], thing.reach)
         if step is not None:
             thing.carry(step)
@@ -848,11 +880,15 @@ class Tracker:
         thing.rest = next(self._rests)
 
     def _claim(self, thing: Pipeline, image: FrameImage, changes: Changes) -> None:
-        """Give the changed pixels within the box of a thing that has come to rest to it."""
+        """Give the changed pixels within the box of a thing that has come to rest to it.
+
+        What it lies on may have been given pixels that show the thing.
+        """
         from deixis.perception.tracking.kernels import SAME
 
         assert self._reference is not None and self._view is not None
-        free = np.flatnonzero(~changes.same & (image.depth > 0))
+        below = [other.slot for other in self._things if not other.active and thing.lies_on(other)]
+        free = np.flatnonzero((~changes.same | np.isin(self._reference.owner, below)) & (image.depth > 0))
         points = image.places(free, self._view.back)
         things, of = self._things_around(image, free, points, thing.settled_at)
         own = free[(of == things.index(thing)) & thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
@@ -1024,7 +1060,9 @@ class Tracker:
         colour, as for a knife on a plate that were set down together.
         """
         limits = self.settings
-        things = [thing for thing in self._things if thing.found or not thing.active]
+        things = [
+            thing for thing in self._things if thing.found or not thing.active or thing.is_carried_off(MIN_WAY)
+        ]
         things.sort(key=lambda thing: float(np.prod(thing.oriented.extents)))
         if not things:
             return things, np.full(len(pixels), -1)

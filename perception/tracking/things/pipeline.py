@@ -70,6 +70,9 @@ MIN_POINTS_BEYOND = 5
 NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""
 
+MIN_ON = 0.7
+"""Least share of the points of a thing within the box of another one, seen from above, on which it lies."""
+
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops to a half."""
 
@@ -148,6 +151,7 @@ class Pipeline:
         self._velocity = np.zeros(3)
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
         self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
+        self._carrier: tuple[Pipeline, NDArray[np.float64]] | None = None  # what it lay on, and its pose on it
         self._unseen, self._spread = (0.0, 0.0), 0.0  # supposed lengths beyond the two ends of the box, and their spread
 
     def _choose_points(self) -> None:
@@ -193,6 +197,64 @@ class Pipeline:
         self.pose = self.pose.copy()
         self.pose[:3, 3] += step
         self._carried.append(self.pose[:3, 3])
+        self._filter.reset(self.pose)
+
+    def lies_on(self, other: Pipeline) -> bool:
+        """Return True if most of the thing lies within the box of a larger one, seen from above.
+
+        Parameters
+        ----------
+        other
+            The thing that may carry it.
+
+        Returns
+        -------
+        bool
+            False for a thing beside the other one.
+        """
+        points = self.placed_points
+        points[:, 2] = other.placed_corners[:, 2].mean()
+        return self.reach < other.reach and bool(other.contains(points, 0.0).mean() > MIN_ON)
+
+    @property
+    def carrier(self) -> Pipeline | None:
+        """Larger thing on which it lay when that one began to move, until it comes to rest."""
+        return None if self._carrier is None else self._carrier[0]
+
+    def load_onto(self, carrier: Pipeline) -> None:
+        """Note what the thing lies on, with which it moves.
+
+        Parameters
+        ----------
+        carrier
+            The other thing, where it rests.
+        """
+        self._carrier = carrier, np.linalg.inv(carrier.pose) @ self.pose
+
+    def is_carried_off(self, least: float) -> bool:
+        """Return True if what the thing lay on is found elsewhere.
+
+        Parameters
+        ----------
+        least
+            Distance in metres from which a place is another one.
+
+        Returns
+        -------
+        bool
+            False for a thing that lay on the table.
+        """
+        if self._carrier is None or not self._carrier[0].found:
+            return False
+        carrier, on_it = self._carrier
+        away = (carrier.pose @ on_it)[:3, 3] - self._rest[:3, 3]
+        return bool(np.linalg.norm(away) > least)
+
+    def ride(self) -> None:
+        """Move the thing with what it lay on."""
+        assert self._carrier is not None, "only a thing that is carried off rides"
+        carrier, on_it = self._carrier
+        self.pose = carrier.pose @ on_it
         self._filter.reset(self.pose)
 
     @property
@@ -780,7 +842,7 @@ class Pipeline:
         if np.linalg.norm(pose[:3, 3] - self._rest[:3, 3]) > 2.5 * self.settings.still:
             self.since = self._places[0][0]
         self.pose, self.active, self._rest = pose, False, pose
-        self.completed, self.views = False, 0
+        self.completed, self.views, self._carrier = False, 0, None
         self._suspected.clear()
         self.settled_at = self._places[-1][0]
         self._places.clear()
