@@ -967,10 +967,9 @@ class Tracker:
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]
             thing.extend(reference.points(each, view), colours, limits.detection.outlines)
-        ends = hidden_lengths(thing, resting, reference, view)
-        if any(ends):
-            length, width, _ = thing.oriented.extents
-            thing.suppose(ends, *likely_length(length, width, length + sum(ends)))
+        ends = thing.unseen_ends(hidden_lengths(thing, resting, reference, view))
+        length, width, _ = thing.oriented.extents
+        thing.suppose(ends, *(likely_length(length, width, length + sum(ends)) if any(ends) else (length, 0.0)))
         if merged:
             thing.take_name(merged, at)
         self._things = [other for other in self._things if other not in merged]

@@ -152,6 +152,7 @@ class Pipeline:
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
         self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
         self._carrier: tuple[Pipeline, NDArray[np.float64]] | None = None  # what it lay on, and its pose on it
+        self._ends_seen = (False, False)  # against and along the long axis of the box
         self._unseen, self._spread = (0.0, 0.0), 0.0  # supposed lengths beyond the two ends of the box, and their spread
 
     def _choose_points(self) -> None:
@@ -720,6 +721,7 @@ class Pipeline:
         )
         self.pose = self.pose.copy()
         self.pose[:3, 3] = middle
+        self._ends_seen = False, False
         if any(self._unseen):  # they end where they were supposed to end
             along, (first, last) = self._along_in_table(), self._supposed_ends(seen=True)
             before, after = np.sort(ends @ along)
@@ -729,6 +731,23 @@ class Pipeline:
         self._middles.append((self.seen_at, self.pose[:3, 3]))
         self._choose_points()
         self._filter.reset(self.pose)
+
+    def unseen_ends(self, hidden: tuple[float, float]) -> tuple[float, float]:
+        """Return how far the thing may go on unseen, where no view has shown its end since its box was extended.
+
+        Parameters
+        ----------
+        hidden
+            Lengths in metres that the present view hides beyond its two ends; 0 where it shows the end.
+
+        Returns
+        -------
+        tuple
+            Lengths in metres.
+        """
+        first, last = (seen or not length for seen, length in zip(self._ends_seen, hidden, strict=True))
+        self._ends_seen = first, last
+        return 0.0 if first else hidden[0], 0.0 if last else hidden[1]
 
     def suppose(self, ends: tuple[float, float], length: float, spread: float) -> None:
         """Suppose that the thing goes on where something hides its ends, until more of it is seen.
