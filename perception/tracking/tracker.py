@@ -938,6 +938,10 @@ class Tracker:
         if moves:  # at the edges of things, pixels are compared with those beside them
             differs |= np.linalg.norm(image.colour - reference.colour, axis=-1) > limits.colour
         changed = differs & (image.depth > 0) & (at - reference.since >= limits.steady) & ~hand
+        free = np.flatnonzero(changed)
+        for other in self._things:
+            if other.active and other.found:  # what shows a thing that moves is not a part of another one
+                changed.ravel()[free[other.contains(image.places(free, view.back), limits.margin)]] = False
 
         def flat() -> FlatThing:
             return FlatThing(thing, reference, view, eye, self._noise, limits.colour, image, changed, thing.views)

@@ -22,11 +22,14 @@ from deixis.perception.tracking.things.pipeline import Pipeline
 STEP = 0.003
 """Distance in metres of the places beyond an end at which it is looked for what is seen there."""
 
-MAX_GAP = 0.009
+MAX_GAP = 0.01
 """Distance in metres from an end within which what hides it begins; pixels at edges show neither."""
 
 MAX_BEYOND = 0.3
 """Largest distance in metres beyond an end at which a thing is looked for."""
+
+NOTHING_KNOWN = np.float32(1e-6)
+"""Depth in metres of a pixel at which nothing is known, so that it hides all places."""
 
 TOO_WIDE = 0.006
 """Width in metres by which a thing may seem wider than its kind is, for noise."""
@@ -63,23 +66,22 @@ def hidden_lengths(
     axes = turned_axes(thing.oriented.yaw) @ thing.pose[:3, :3].T
     middle = thing.placed_corners.mean(axis=0)
     others = list(others)
+    depth = np.where(reference.depth > 0, reference.depth, NOTHING_KNOWN)
+    unless_own = np.where(reference.owner == thing.slot, NOTHING_KNOWN, depth)  # it goes on where it is seen
     steps = np.arange(STEP, MAX_BEYOND, STEP)
     found = []
     for sign in (-1, 1):
         places = middle + sign * (length / 2 + steps[:, None]) * axes[0]
-        hidden = _hides(places, reference, view)
-        near = steps <= MAX_GAP
+        hidden = view.hides(places, depth, MIN_BEFORE)
+        goes_on = view.hides(places, unless_own, MIN_BEFORE)
+        seen = float(steps[int((hidden | ~goes_on).argmax())]) - STEP
+        near = steps < seen + MAX_GAP
         if not hidden[near].any():
             found.append(0.0)
             continue
-        free = (~hidden & ~near) | np.any([other.contains(places, 0.0) for other in others], axis=0)
+        free = (~goes_on & ~near) | np.any([other.contains(places, 0.0) for other in others], axis=0)
         found.append(float(steps[int(free.argmax())] - STEP) if free.any() else MAX_BEYOND)
     return found[0], found[1]
-
-
-def _hides(places: NDArray[np.float64], reference: Reference, view: TableView) -> NDArray[np.bool_]:
-    """Return True for each place before which the table at rest has a surface, or which is out of the image."""
-    return view.hides(places, reference.depth, MIN_BEFORE)
 
 
 def likely_length(seen: float, width: float, most: float) -> tuple[float, float]:

@@ -270,8 +270,8 @@ class Pipeline:
         corners: NDArray[np.float64] = self.oriented.corners @ self.pose[:3, :3].T + self.pose[:3, 3]
         return corners
 
-    def near_since(self, place: NDArray[np.float64], before: float) -> float:
-        """Return since when the middle of a thing that has not moved has been near a place.
+    def near_for(self, place: NDArray[np.float64], before: float) -> float:
+        """Return for how long the middle of a thing that has not moved has been near a place.
 
         Parameters
         ----------
@@ -283,15 +283,11 @@ class Pipeline:
         Returns
         -------
         float
-            Time in seconds; infinite if it was not near.
+            Time in seconds; 0 if it was never near.
         """
-        since = np.inf
-        for at, middle in reversed(self._middles):
-            if at < before:
-                if np.linalg.norm(middle - place) > NEAR:
-                    break
-                since = at
-        return since
+        times = [min(at, before) for at, _ in self._middles] + [before]
+        lengths = zip(self._middles, times, times[1:], strict=False)
+        return sum(end - at for (_, middle), at, end in lengths if np.linalg.norm(middle - place) <= NEAR)
 
     def take_name(self, parts: Sequence[Pipeline], at: float) -> None:
         """Take the name of one of the parts that were merged into the thing, if it was known longer by that name.
@@ -307,7 +303,7 @@ class Pipeline:
             Time in seconds when they were merged.
         """
         place = self.pose[:3, 3]
-        known = min([self, *parts], key=lambda part: (part.near_since(place, at), part.at))
+        known = min([self, *parts], key=lambda part: (-part.near_for(place, at), part.at))
         self.id, known.id = known.id, self.id
         self.at, self.since = known.at, min(self.since, known.since)
 
@@ -728,7 +724,7 @@ class Pipeline:
             self._unseen = max(float(first @ along - before), 0.0), max(float(after - last @ along), 0.0)
             self._spread = self._spread if any(self._unseen) else 0.0
         self._rest = self.pose
-        self._middles.append((self.seen_at, self.pose[:3, 3]))
+        self._middles.append((self.seen_at, self.report(self.seen_at).centre))
         self._choose_points()
         self._filter.reset(self.pose)
 
@@ -761,6 +757,7 @@ class Pipeline:
         """
         share = max(length - self.oriented.extents[0], 0.0) / max(sum(ends), 1e-9)
         self._unseen, self._spread = (share * ends[0], share * ends[1]), spread
+        self._middles.append((self.seen_at, self.report(self.seen_at).centre))
 
     def _along_in_table(self) -> NDArray[np.float64]:
         """Return the direction (3,) of the long axis of the box in the table's frame."""
