@@ -28,11 +28,14 @@ MAX_GAP = 0.01
 MAX_BEYOND = 0.3
 """Largest distance in metres beyond an end at which a thing is looked for."""
 
-NOTHING_KNOWN = np.float32(1e-6)
-"""Depth in metres of a pixel at which nothing is known, so that it hides all places."""
+NEAREST = np.float32(1e-6)
+"""Depth in metres of a surface that is before all places."""
 
 TOO_WIDE = 0.006
 """Width in metres by which a thing may seem wider than its kind is, for noise."""
+
+RIGHT = 0.02
+"""Error in metres up to which a length is right, so that the middle is right to a centimetre."""
 
 LENGTHS = np.arange(0.0, 0.4, 0.001)
 """Lengths in metres for which the prior probability is known."""
@@ -66,13 +69,13 @@ def hidden_lengths(
     axes = turned_axes(thing.oriented.yaw) @ thing.pose[:3, :3].T
     middle = thing.placed_corners.mean(axis=0)
     others = list(others)
-    depth = np.where(reference.depth > 0, reference.depth, NOTHING_KNOWN)
-    unless_own = np.where(reference.owner == thing.slot, NOTHING_KNOWN, depth)  # it goes on where it is seen
+    own = (reference.owner == thing.slot) | (reference.depth <= 0)  # it goes on where it is seen, or nothing is known
+    unless_own = np.where(own, NEAREST, reference.depth)
     steps = np.arange(STEP, MAX_BEYOND, STEP)
     found = []
     for sign in (-1, 1):
         places = middle + sign * (length / 2 + steps[:, None]) * axes[0]
-        hidden = view.hides(places, depth, MIN_BEFORE)
+        hidden = view.hides(places, reference.depth, MIN_BEFORE)
         goes_on = view.hides(places, unless_own, MIN_BEFORE)
         seen = float(steps[int((hidden | ~goes_on).argmax())]) - STEP
         near = steps < seen + MAX_GAP
@@ -85,7 +88,7 @@ def hidden_lengths(
 
 
 def likely_length(seen: float, width: float, most: float) -> tuple[float, float]:
-    """Return the mean and the standard deviation of the length of a piece of cutlery of which a part is seen.
+    """Return the likeliest length of a piece of cutlery of which a part is seen, and its standard deviation.
 
     Parameters
     ----------
@@ -97,12 +100,13 @@ def likely_length(seen: float, width: float, most: float) -> tuple[float, float]
     Returns
     -------
     tuple
-        Mean and standard deviation in metres; the seen length, and 0, if no piece of cutlery has such a length.
+        Length that is right to ``RIGHT`` with the largest probability, and the standard deviation, in metres; the seen
+        length, and 0, if no piece of cutlery has a possible length.
 
     Examples
     --------
-    >>> mean, spread = likely_length(0.1, 0.02, 0.4)
-    >>> 0.16 < mean < 0.2, 0.02 < spread < 0.04
+    >>> length, spread = likely_length(0.1, 0.02, 0.4)
+    >>> 0.15 < length < 0.2, 0.02 < spread < 0.04
     (True, True)
     >>> likely_length(0.39, 0.02, 0.4)
     (0.39, 0.0)
@@ -112,8 +116,10 @@ def likely_length(seen: float, width: float, most: float) -> tuple[float, float]
     total = float(weights.sum())
     if total <= 0:
         return seen, 0.0
-    mean = float(LENGTHS @ weights) / total
-    return mean, float(np.sqrt((LENGTHS - mean) ** 2 @ weights / total))
+    within = np.convolve(weights, np.ones(2 * round(RIGHT / LENGTHS[1]) + 1), "same")
+    possible = np.flatnonzero((LENGTHS >= seen) & (LENGTHS <= most))
+    length = float(LENGTHS[possible[within[possible].argmax()]])
+    return length, float(np.sqrt((LENGTHS - length) ** 2 @ weights / total))
 
 
 @cache
