@@ -48,7 +48,7 @@ from deixis.perception.tracking.things.hands import Hands
 from deixis.perception.tracking.things.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.things.model import model_of
 from deixis.perception.tracking.things.particles import Estimate
-from deixis.perception.tracking.things.pipeline import COLOURS, Pipeline, likeness
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 MIN_FINITE_SHARE = 0.02
 """Least share of points with a depth in a frame that is used."""
@@ -106,8 +106,8 @@ TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
 """Largest time in seconds between the coming of a thing and of a piece of it, their distance in metres, and the least
 mean likeness of their colours in any light."""
 
-PART_LIKENESS = 0.9
-"""Least mean likeness of the colours of two parts of one thing in any light; they differ by the noise of the sensor."""
+SAME_HUE = 2.0
+"""Largest distance in RGB between the median colours of two parts of one thing, across the direction of its light."""
 
 MAX_TABLE_SHARE = 0.6
 """Largest share of the points of a detected object that may be the table's."""
@@ -478,14 +478,14 @@ class Tracker:
             k = int(np.bincount(of[own] + 1).argmax()) - 1
             inside = _enlarged(own, self.settings.stride, cloud.organised).ravel() & (labels == k)
             around = (labels == k) & ~inside
-            if k >= 0 and around.any() and not _are_alike(tints[inside], tints[around]):
+            if k >= 0 and around.any() and not _have_one_hue(tints[inside], tints[around]):
                 labels[inside] = BACKGROUND
         joined = list(range(len(found.boxes)))
         for k in sorted(set(joined) - set(matches)):
             slots = owner[of == k]
             for whole, thing in matches.items():
                 if len(slots) and (slots == thing.slot).mean() > 0.5:
-                    if _are_alike(tints[labels == k], tints[labels == whole]):
+                    if _have_one_hue(tints[labels == k], tints[labels == whole]):
                         joined[k] = whole
         return _rejoined(replace(found, labels=labels), joined, self.settings.detection.outlines)
 
@@ -1244,10 +1244,11 @@ def _detected(scene: Scene) -> Detection:
     return replace(found, labels=places[found.labels], boxes=scene.boxes, oriented=oriented)
 
 
-def _are_alike(tints: NDArray[np.float64], others: NDArray[np.float64]) -> bool:
-    """Return True if colours (k, 3) are those of some others (m, 3), in any light."""
-    few = others[:: max(1, len(others) // COLOURS)]
-    return bool(likeness(tints, few, np.inf).mean() >= PART_LIKENESS)
+def _have_one_hue(tints: NDArray[np.float64], others: NDArray[np.float64]) -> bool:
+    """Return True if colours (k, 3) and others (m, 3) are those of one thing, in any light; the medians have no noise."""
+    one, other = np.median(tints, axis=0), np.median(others, axis=0)
+    across = one - (one @ other) / max(float(other @ other), 1e-9) * other
+    return bool(np.linalg.norm(across) < SAME_HUE)
 
 
 def _rejoined(found: Detection, joined: list[int], outlines: OutlineSettings) -> Detection:
