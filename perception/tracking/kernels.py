@@ -364,7 +364,10 @@ def mean_of(  # type: ignore[no-untyped-def]
                 continue
             down, across = y - m, x - n
             found = float(earlier[m, n])
-            for p, q, share in ((m, n + (1 if across > 0 else -1), abs(across)), (m + (1 if down > 0 else -1), n, abs(down))):
+            for p, q, share in (
+                (m, n + (1 if across > 0 else -1), abs(across)),
+                (m + (1 if down > 0 else -1), n, abs(down)),
+            ):
                 if share > 1e-3 and 0 <= p < rows and 0 <= q < columns:
                     if earlier[p, q] > 0 and abs(earlier[p, q] - earlier[m, n]) < near:
                         found += share * (earlier[p, q] - earlier[m, n])

@@ -617,7 +617,9 @@ class Tracker:
             points = thing.placed_points
             hidden = self._view.hides(points, self._last[1].depth, MIN_BEFORE)
             if hidden.any() and thing.cloud.colours is not None:
-                new.extend(points[hidden], thing.cloud.colours[hidden].astype(np.float32), self.settings.detection.outlines)
+                new.extend(
+                    points[hidden], thing.cloud.colours[hidden].astype(np.float32), self.settings.detection.outlines
+                )
         moves = thing.active and float(np.linalg.norm(new.pose[:3, 3] - thing.pose[:3, 3])) > self.settings.still
         new.since, new.at = (new.at if moves else thing.since), thing.at
         self._things[self._things.index(thing)] = new
@@ -938,10 +940,6 @@ class Tracker:
         if moves:  # at the edges of things, pixels are compared with those beside them
             differs |= np.linalg.norm(image.colour - reference.colour, axis=-1) > limits.colour
         changed = differs & (image.depth > 0) & (at - reference.since >= limits.steady) & ~hand
-        free = np.flatnonzero(changed)
-        for other in self._things:
-            if other.active and other.found:  # what shows a thing that moves is not a part of another one
-                changed.ravel()[free[other.contains(image.places(free, view.back), limits.margin)]] = False
 
         def flat() -> FlatThing:
             return FlatThing(thing, reference, view, eye, self._noise, limits.colour, image, changed, thing.views)
@@ -1016,9 +1014,7 @@ class Tracker:
         assert self._view is not None
         return self._view.back
 
-    def _look_for_new(
-        self, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
-    ) -> tuple[str, ...]:
+    def _look_for_new(self, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float) -> tuple[str, ...]:
         """Segment what changed and stays as it is; return the ids of new things."""
         from deixis.perception.tracking.kernels import FARTHER
 
@@ -1063,9 +1059,7 @@ class Tracker:
         colour, as for a knife on a plate that were set down together.
         """
         limits = self.settings
-        things = [
-            thing for thing in self._things if thing.found or not thing.active or thing.is_carried_off(MIN_WAY)
-        ]
+        things = [thing for thing in self._things if thing.found or not thing.active or thing.is_carried_off(MIN_WAY)]
         things.sort(key=lambda thing: float(np.prod(thing.oriented.extents)))
         if not things:
             return things, np.full(len(pixels), -1)
@@ -1104,9 +1098,7 @@ class Tracker:
         found: NDArray[np.bool_] = (~opened & beside).ravel()[pixels]
         return found
 
-    def _segment(
-        self, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float
-    ) -> tuple[str, ...]:
+    def _segment(self, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float) -> tuple[str, ...]:
         """Detect objects among the free pixels, which lost things and new ones then have."""
         from scipy.ndimage import binary_dilation
 

@@ -203,10 +203,7 @@ class TableView:
         within = (depth > 0) & (row >= 0) & (column >= 0) & (row < rows) & (column < columns)
         return np.asarray(row[within] * columns + column[within]), np.asarray(depth[within])
 
-
-    def hides(
-        self, places: NDArray[np.float64], depth: NDArray[np.float32], margin: float
-    ) -> NDArray[np.bool_]:
+    def hides(self, places: NDArray[np.float64], depth: NDArray[np.float32], margin: float) -> NDArray[np.bool_]:
         """Return True for each place that is out of the image, or behind something.
 
         Parameters

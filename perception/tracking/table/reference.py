@@ -219,9 +219,7 @@ class Reference:
         self.tries.ravel()[pixels] = 0
         return before
 
-    def assign(
-        self, pixels: NDArray[np.intp], owner: int, image: FrameImage, tolerance: float, noise: float
-    ) -> None:
+    def assign(self, pixels: NDArray[np.intp], owner: int, image: FrameImage, tolerance: float, noise: float) -> None:
         """Give pixels to an owner that a frame shows, and keep the means of many frames where it agrees with them.
 
         Parameters

@@ -153,7 +153,10 @@ class Pipeline:
         self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
         self._carrier: tuple[Pipeline, NDArray[np.float64]] | None = None  # what it lay on, and its pose on it
         self._ends_seen = (False, False)  # against and along the long axis of the box
-        self._unseen, self._spread = (0.0, 0.0), 0.0  # supposed lengths beyond the two ends of the box, and their spread
+        self._unseen, self._spread = (
+            (0.0, 0.0),
+            0.0,
+        )  # supposed lengths beyond the two ends of the box, and their spread
 
     def _choose_points(self) -> None:
         """Choose the points of the thing that are compared with frames."""
