@@ -368,9 +368,9 @@ def mean_of(  # type: ignore[no-untyped-def]
                 (m, n + (1 if across > 0 else -1), abs(across)),
                 (m + (1 if down > 0 else -1), n, abs(down)),
             ):
-                if share > 1e-3 and 0 <= p < rows and 0 <= q < columns:
-                    if earlier[p, q] > 0 and abs(earlier[p, q] - earlier[m, n]) < near:
-                        found += share * (earlier[p, q] - earlier[m, n])
+                inside = share > 1e-3 and 0 <= p < rows and 0 <= q < columns
+                if inside and earlier[p, q] > 0 and abs(earlier[p, q] - earlier[m, n]) < near:
+                    found += share * (earlier[p, q] - earlier[m, n])
             total[i, j] += z + found - ahead
             weight[i, j] += 1.0
             for k in range(3):

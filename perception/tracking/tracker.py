@@ -484,9 +484,9 @@ class Tracker:
         for k in sorted(set(joined) - set(matches)):
             slots = owner[of == k]
             for whole, thing in matches.items():
-                if len(slots) and (slots == thing.slot).mean() > 0.5:
-                    if _have_one_hue(tints[labels == k], tints[labels == whole]):
-                        joined[k] = whole
+                is_its_own = len(slots) > 0 and (slots == thing.slot).mean() > 0.5
+                if is_its_own and _have_one_hue(tints[labels == k], tints[labels == whole]):
+                    joined[k] = whole
         return _rejoined(replace(found, labels=labels), joined, self.settings.detection.outlines)
 
     def _free_table(self, of: NDArray[np.int32], ids: Collection[str]) -> None:
@@ -1237,7 +1237,7 @@ def _detected(scene: Scene) -> Detection:
 
 
 def _have_one_hue(tints: NDArray[np.float64], others: NDArray[np.float64]) -> bool:
-    """Return True if colours (k, 3) and others (m, 3) are those of one thing, in any light; the medians have no noise."""
+    """Return True if colours (k, 3) and others (m, 3) are those of one thing, in any light."""
     one, other = np.median(tints, axis=0), np.median(others, axis=0)
     across = one - (one @ other) / max(float(other @ other), 1e-9) * other
     return bool(np.linalg.norm(across) < SAME_HUE)

@@ -504,7 +504,7 @@ class Pipeline:
         own: NDArray[np.float64],
         noise: float,
     ) -> tuple[NDArray[np.float64], float]:
-        """Return the best pose that is shifted along the table and turned about z from another, and its gain of score."""
+        """Return the best pose that is shifted along the table and turned about z from another, and its gain."""
         from deixis.perception.tracking.kernels import covered
 
         own = own[np.linspace(0, len(own) - 1, min(len(own), self.settings.particles.points)).astype(np.int64)]

@@ -43,6 +43,7 @@ def test_mean_has_less_noise_than_one_frame(step: float) -> None:
     inner = found.points.reshape(*SHAPE, 3)[:, :60, 2]  # in view in all frames
     assert np.std(inner) < 0.6 * NOISE
     before = frames[-1][0]
+    assert found.colours is not None and before.colours is not None
     assert np.array_equal(found.colours, before.colours), "colours are not mixed across an edge"
     ratio = found.points[:, 0] / found.points[:, 2] - before.points[:, 0] / before.points[:, 2]
     assert np.abs(ratio).max() < 1e-6, "points stay on their rays"
