@@ -40,8 +40,9 @@ class RecentFrames:
     >>> for _ in range(5):
     ...     wall = back_projected(rng.normal(1.0, 0.002, (30, 40)), lens)
     ...     recent.add(PointCloud(wall, organised=(30, 40)), np.eye(4))
-    >>> float(np.std(wall[:, 2]).round(4)), float(np.std(recent.mean(0.01, 0.0, 40.0).points[:, 2]).round(4))
-    (0.002, 0.0009)
+    >>> mean = recent.mean(0.01, 0.0, 40.0)
+    >>> [round(float(np.std(cloud[:, 2])), 4) for cloud in (wall, mean.points)]
+    [0.002, 0.0009]
     """
 
     def __init__(self, optics: Optics, count: int) -> None:

@@ -22,8 +22,9 @@ from deixis.perception.tracking.things.pipeline import Pipeline
 STEP = 0.003
 """Distance in metres of the places beyond an end at which it is looked for what is seen there."""
 
-MAX_GAP = 0.01
-"""Distance in metres from an end within which what hides it begins; pixels at edges show neither."""
+MAX_GAP = 0.005
+"""Distance in metres from an end, or from the last pixel that shows the thing, within which what hides it begins. Where
+the table is seen between the two, the end is seen."""
 
 MAX_BEYOND = 0.3
 """Largest distance in metres beyond an end at which a thing is looked for."""
@@ -34,8 +35,9 @@ NEAREST = np.float32(1e-6)
 TOO_WIDE = 0.006
 """Width in metres by which a thing may seem wider than its kind is, for noise."""
 
-RIGHT = 0.02
-"""Error in metres up to which a length is right, so that the middle is right to a centimetre."""
+RIGHT = 0.014
+"""Error in metres up to which a length is right. The middle is then right to 7 mm, which leaves 3 mm of a centimetre for
+the errors of the end that is seen."""
 
 LENGTHS = np.arange(0.0, 0.4, 0.001)
 """Lengths in metres for which the prior probability is known."""

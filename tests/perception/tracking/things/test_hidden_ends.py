@@ -54,9 +54,10 @@ def test_end_lies_behind_what_hides_it() -> None:
     assert after == pytest.approx(0.08, abs=0.006), "16 pixels are hidden"
 
 
-def test_end_is_seen_where_the_table_is() -> None:
+@pytest.mark.parametrize("first", [52, 56])
+def test_end_is_seen_where_the_table_is(first: int) -> None:
     knife = box_of(*KNIFE, 1, 0.01)
-    assert hidden_lengths(knife, [], table_with(slice(56, 72)), VIEW) == (0.0, 0.0)
+    assert hidden_lengths(knife, [], table_with(slice(first, 72)), VIEW) == (0.0, 0.0)
 
 
 def test_thing_goes_on_where_its_own_pixels_are() -> None:
@@ -87,6 +88,7 @@ def test_length_is_between_what_is_seen_and_what_can_be_hidden() -> None:
         mean, spread = likely_length(seen, 0.02, most)
         assert seen <= mean <= most and 0 < spread < most - seen
     assert likely_length(0.1, 0.06, 0.4)[0] > likely_length(0.1, 0.02, 0.4)[0], "only large spoons are so wide"
+    assert likely_length(0.215, 0.02, 0.4)[0] < 0.215 + 0.015, "it is right for a knife whose end is just seen, too"
 
 
 def test_report_has_the_supposed_length_and_its_spread() -> None:
