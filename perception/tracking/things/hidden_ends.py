@@ -36,8 +36,8 @@ TOO_WIDE = 0.006
 """Width in metres by which a thing may seem wider than its kind is, for noise."""
 
 RIGHT = 0.014
-"""Error in metres up to which a length is right. The middle is then right to 7 mm, which leaves 3 mm of a centimetre for
-the errors of the end that is seen."""
+"""Error in metres up to which a length is right. The middle is then right to 7 mm, which leaves 3 mm of a centimetre
+for the errors of the end that is seen."""
 
 LENGTHS = np.arange(0.0, 0.4, 0.001)
 """Lengths in metres for which the prior probability is known."""
