@@ -330,3 +330,48 @@ def covered(places, turns, points, centre, yaw, half):  # type: ignore[no-untype
                 count += 1
         found[p] = count / max(len(points), 1)
     return found
+
+
+@njit(cache=True, nogil=True)
+def mean_of(  # type: ignore[no-untyped-def]
+    depth, shade, earlier, colours, turn, shift, tolerance, noise, least_colour, total, tint, weight
+):
+    """Add what an earlier frame shows of the points of a frame to sums of depths (r, c) and colours (r, c, 3).
+
+    ``turn`` (3, 3) and ``shift`` (3,) take homogeneous pixel coordinates from the frame to the ``earlier`` one. Depths
+    between the pixels of one surface are interpolated. ``weight`` (r, c) counts the measurements.
+    """
+    rows, columns = depth.shape
+    square = least_colour * least_colour
+    for i in range(rows):
+        for j in range(columns):
+            z = depth[i, j]
+            if z <= 0:
+                continue
+            ahead = (turn[2, 0] * j + turn[2, 1] * i + turn[2, 2]) * z + shift[2]
+            if ahead <= 0:
+                continue
+            x = ((turn[0, 0] * j + turn[0, 1] * i + turn[0, 2]) * z + shift[0]) / ahead
+            y = ((turn[1, 0] * j + turn[1, 1] * i + turn[1, 2]) * z + shift[1]) / ahead
+            m, n = int(np.floor(y + 0.5)), int(np.floor(x + 0.5))
+            if m < 0 or n < 0 or m >= rows or n >= columns or earlier[m, n] <= 0:
+                continue
+            near = max(tolerance, noise * z * z)
+            apart = 0.0
+            for k in range(3):
+                apart += (float(shade[i, j, k]) - float(colours[m, n, k])) ** 2
+            if abs(earlier[m, n] - ahead) > near or apart > square:
+                continue
+            down, across = y - m, x - n
+            found = float(earlier[m, n])
+            for p, q, share in (
+                (m, n + (1 if across > 0 else -1), abs(across)),
+                (m + (1 if down > 0 else -1), n, abs(down)),
+            ):
+                inside = share > 1e-3 and 0 <= p < rows and 0 <= q < columns
+                if inside and earlier[p, q] > 0 and abs(earlier[p, q] - earlier[m, n]) < near:
+                    found += share * (earlier[p, q] - earlier[m, n])
+            total[i, j] += z + found - ahead
+            weight[i, j] += 1.0
+            for k in range(3):
+                tint[i, j, k] += colours[m, n, k]

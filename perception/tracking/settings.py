@@ -77,7 +77,10 @@ class TrackingSettings:
     colour
         Difference of two colours that counts as a change, as a distance in RGB from 0 to 255.
     steady
-        Time for which a change must last before it is segmented.
+        Time for which a change must last before it is segmented, and after which the mean of the first frames corrects
+        the first look.
+    recent
+        Number of the last frames whose mean is segmented.
     least_pixels
         Least number of pixels of a new thing in the image that is compared.
     margin
@@ -116,6 +119,7 @@ class TrackingSettings:
     noise_ratio: float = 4.0
     colour: float = 40.0
     steady: float = 0.45
+    recent: int = 6
     least_pixels: int = 25
     margin: float = 0.008
     turned_margin: float = 0.03

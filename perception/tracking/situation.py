@@ -42,6 +42,9 @@ class TrackedThing:
         ``seen``, ``hidden`` (something hides it), or ``gone``.
     moving
         True while it moves.
+    spread
+        Standard deviation in metres of the middle along the thing, of which something hides an end; 0 if its ends are
+        seen.
     """
 
     id: str
@@ -55,6 +58,7 @@ class TrackedThing:
     seen_at: float
     state: State
     moving: bool
+    spread: float = 0.0
 
     @property
     def centre(self) -> NDArray[np.float64]:

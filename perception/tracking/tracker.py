@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.detect import Detection, detect, detect_above
+from deixis.perception.detection.detect import BACKGROUND, Detection, detect, detect_above
+from deixis.perception.detection.outline import oriented_box, upright_box
+from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
@@ -25,6 +27,7 @@ from deixis.perception.scene import Scene
 from deixis.perception.tracking.camera.motion import STANDING, CameraMotion, moved_by
 from deixis.perception.tracking.camera.registration import levels_of
 from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
+from deixis.perception.tracking.frames.recent import RecentFrames
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.table.colours import TableColours
@@ -33,6 +36,7 @@ from deixis.perception.tracking.table.reference import GAP, TABLE, UNKNOWN_OWNER
 from deixis.perception.tracking.things.completion import (
     BEYOND,
     MARGIN,
+    MIN_BEFORE,
     FlatThing,
     floating_parts,
     revealed_part,
@@ -41,6 +45,7 @@ from deixis.perception.tracking.things.completion import (
 )
 from deixis.perception.tracking.things.fitting import Fit, fits
 from deixis.perception.tracking.things.hands import Hands
+from deixis.perception.tracking.things.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.things.model import model_of
 from deixis.perception.tracking.things.particles import Estimate
 from deixis.perception.tracking.things.pipeline import Pipeline
@@ -100,6 +105,12 @@ ON_ITS_OWNER = -2
 TOGETHER, TOUCHING, ALIKE = 2.0, 0.012, 0.5
 """Largest time in seconds between the coming of a thing and of a piece of it, their distance in metres, and the least
 mean likeness of their colours in any light."""
+
+SAME_HUE = 2.0
+"""Largest distance in RGB between the median colours of two parts of one thing, across the direction of its light."""
+
+MAX_TABLE_SHARE = 0.6
+"""Largest share of the points of a detected object that may be the table's."""
 
 REVEALED = 0.5
 """Minimum share of the pixels of a new thing at which nothing was known, for it to have come into view by itself."""
@@ -167,6 +178,8 @@ class Tracker:
         self._optics: Optics | None = None
         self._view: TableView | None = None
         self._reference: Reference | None = None
+        self._recent: RecentFrames | None = None
+        self._is_looked_at_closely = False
         self._noise = 0.0015
         self._detected_at = -np.inf
         self._hand_at = -np.inf
@@ -227,11 +240,17 @@ class Tracker:
         if hand.any() or self._is_busy(image, changes, at):
             self._hand_at = at
         self._last = cloud, image, number
+        assert self._recent is not None
+        self._recent.add(cloud, self._view.back)
         self._look_at_resting(image, changes, at)
         self._follow(image, changes, at, at - before)
         went = self._let_go(at)
-        came = self._look_for_new(cloud, image, changes, hand, at)
-        merged = tuple(thing.report(at) for thing in self._complete(image, changes, hand, at))
+        came = self._look_for_new(image, changes, hand, at)
+        if self._is_quiet(at) and not self._is_looked_at_closely and at - self._laid_out_at >= self.settings.steady:
+            closer = self._look_closely(at)
+            came, merged = (*came, *closer.came), closer.merged
+        else:
+            merged = tuple(thing.report(at) for thing in self._complete(image, changes, hand, at))
         return replace(self._situation(at, number, came, went), merged=merged, busy=self._hand_at == at)
 
     @property
@@ -314,7 +333,10 @@ class Tracker:
     ) -> tuple[str, ...]:
         """Make a frame the reference, in which the objects of a detection are new things or those that are kept."""
         assert self._view is not None
+        assert self._optics is not None
         self._last, self._laid_out_at = (cloud, image, self._number - 1), at
+        self._recent, self._is_looked_at_closely = RecentFrames(self._optics, self.settings.recent), False
+        self._recent.add(cloud, self._view.back)
         of = self._shown(found.labels, cloud)
         self._reference = Reference(image, np.full(of.shape, UNKNOWN_OWNER, np.int16), at)
         near = np.abs(image.depth - self._view.level) < np.maximum(
@@ -364,11 +386,24 @@ class Tracker:
         self, found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, id: str, slot: int, at: float
     ) -> Pipeline:
         assert self._frame is not None
+        points = self._without_table(cloud, points)
         change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
         model = model_of(found, cloud, points, k, change, self.settings.detection.outlines)
         made = Pipeline(id, slot, model.cloud, model.half, model.oriented, model.pose, at, self.settings)
         made.rest = next(self._rests)
         return made
+
+    def _without_table(self, cloud: PointCloud, points: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Return the points of a detected object that do not show the table beside it, as between the tines of a fork.
+
+        These are as low as the table and have its colours; an object of which little else is left keeps all.
+        """
+        assert self._frame is not None
+        if cloud.colours is None:
+            return points
+        heights = cloud.points[points] @ self._frame[2, :3] + self._frame[2, 3]
+        low = (heights < self.settings.tolerance) & self._colours.include(cloud.colours[points].astype(np.float32))
+        return points[~low] if low.mean() < MAX_TABLE_SHARE else points
 
     # Looks at the whole table
 
@@ -400,6 +435,73 @@ class Tracker:
         came = self._lay_out(found, cloud, image, at, kept)
         return self._situation(at, number, came, went, ("most things changed at once: the table is looked at again",))
 
+    def _is_quiet(self, at: float) -> bool:
+        """Return True if nothing moves over the table, and nothing has for a while."""
+        return at - self._hand_at > HAND_MEMORY and not any(thing.active for thing in self._things)
+
+    def _look_closely(self, at: float) -> Situation:
+        """Correct the things of the first look by the mean of the frames since, which has less noise.
+
+        The noise of one frame cuts off the ends of thin things, cuts things into pieces, and hides what lies on a
+        plate.
+        """
+        assert self._frame is not None
+        self._is_looked_at_closely = True
+        plane = Plane(self._frame[2, :3], -float(self._frame[2, 3]))
+        cloud = self._mean()
+        found = detect_above(cloud, plane, self.settings.detection)
+        if found is None:
+            return self._situation(at, self._number - 1)
+        found = self._reconciled(found, cloud)
+        situation, matches = self._correct(found, cloud, at, least_shared=1.0)
+        self._free_table(self._shown(found.labels, cloud), matches.values())
+        return situation
+
+    def _reconciled(self, found: Detection, cloud: PointCloud) -> Detection:
+        """Return a detection in which things that were found before keep what has their colours, and nothing else.
+
+        Whether a knife is cut off from a plate, or the foot of a glass from its bowl, depends on the noise. An object
+        that is a piece of a thing and has its colours is joined to it; a thing of other colours than the object in
+        which it is keeps its points.
+        """
+        assert self._last is not None and self._reference is not None and cloud.organised is not None
+        if cloud.colours is None:
+            return found
+        image, labels, owner = self._last[1], found.labels.copy(), self._reference.owner
+        of = self._shown(labels, cloud)
+        matches = self._matches(of, len(found.boxes), image, self._things)
+        tints = cloud.colours.astype(np.float64)
+        for thing in self._things:
+            own = owner == thing.slot
+            if thing in matches.values() or not own.any():
+                continue
+            k = int(np.bincount(of[own] + 1).argmax()) - 1
+            inside = _enlarged(own, self.settings.stride, cloud.organised).ravel() & (labels == k)
+            around = (labels == k) & ~inside
+            if k >= 0 and around.any() and not _have_one_hue(tints[inside], tints[around]):
+                labels[inside] = BACKGROUND
+        joined = list(range(len(found.boxes)))
+        for k in sorted(set(joined) - set(matches)):
+            slots = owner[of == k]
+            for whole, thing in matches.items():
+                is_its_own = len(slots) > 0 and (slots == thing.slot).mean() > 0.5
+                if is_its_own and _have_one_hue(tints[labels == k], tints[labels == whole]):
+                    joined[k] = whole
+        return _rejoined(replace(found, labels=labels), joined, self.settings.detection.outlines)
+
+    def _free_table(self, of: NDArray[np.int32], ids: Collection[str]) -> None:
+        """Give the pixels that things no longer have, and that are as low as the table, to the table."""
+        assert self._reference is not None and self._view is not None
+        reference, level = self._reference, self._view.level
+        near = np.abs(reference.depth - level) < np.maximum(self.settings.tolerance, self._deviation * level**2)
+        slots = [thing.slot for thing in self._things if thing.id in ids]
+        reference.owner[(of == BACKGROUND) & np.isin(reference.owner, slots) & near] = TABLE
+
+    def _mean(self) -> PointCloud:
+        """Return the last frame with the means of what the last frames measured."""
+        assert self._recent is not None
+        return self._recent.mean(self.settings.tolerance, self._deviation, self.settings.colour)
+
     def look_again(self, scene: Scene) -> tuple[Situation, dict[str, str]]:
         """Correct the things by a detection of the whole table in the last frame, in which nothing moves.
 
@@ -425,11 +527,21 @@ class Tracker:
         found = scene.detection
         if self._last is None or self._reference is None or self._at is None:
             raise CloudError("look_again() needs a frame; call update() first")
-        cloud, image, number = self._last
+        cloud = self._last[0]
         if not isinstance(found, Detection) or len(found.labels) != len(cloud):
             raise CloudError("`scene` must be perceived in the cloud of the last frame")
-        at, reference = self._at, self._reference
-        whole = _detected(scene)
+        situation, ids = self._correct(_detected(scene), cloud, self._at, SAME_MODEL)
+        return situation, {detected.id: ids[k] for k, detected in enumerate(scene.objects) if k in ids}
+
+    def _correct(
+        self, whole: Detection, cloud: PointCloud, at: float, least_shared: float
+    ) -> tuple[Situation, dict[int, str]]:
+        """Correct the things by a detection of the whole table; return the ids of the detected objects by number.
+
+        A thing keeps its model if its pixels are those of the detected one at least to this intersection over union.
+        """
+        assert self._last is not None and self._reference is not None
+        (_, image, number), reference = self._last, self._reference
         of = self._shown(whole.labels, cloud)
         matches = self._matches(of, len(whole.boxes), image, self._things)
         merged = []
@@ -445,34 +557,41 @@ class Tracker:
         self._things = [thing for thing in self._things if thing not in merged]
         for thing in merged:
             reference.take(thing.slot, None, set())
-        came, ids = [], {}
-        for k, detected in enumerate(scene.objects):
+        came, modelled, ids = [], [], dict[int, str]()
+        for k in range(len(whole.boxes)):
             pixels = np.flatnonzero(of == k)
             points = np.flatnonzero(whole.labels == k)
             if k in matches:
                 thing = matches[k]
-                if thing.active or _shared(reference.owner == thing.slot, of == k) < SAME_MODEL:
+                if thing.active or _shared(reference.owner == thing.slot, of == k) < least_shared:
                     thing = self._remodelled(thing, self._modelled(whole, cloud, points, k, thing.id, thing.slot, at))
+                    modelled.append(thing.id)
             elif self._outline.is_crossed_by(image.places(pixels, self._back)) or self._is_piece(image, pixels):
                 continue
             else:
                 came.append(self._enter(whole, cloud, points, k, at))
                 thing = self._things[-1]
                 thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
-            ids[detected.id] = thing.id
-            reference.give(pixels, thing.slot, image)
-        self._let_stand(came, image)
+            ids[k] = thing.id
+            reference.assign(pixels, thing.slot, image, self.settings.tolerance, self._deviation)
+        self._let_stand((*came, *modelled), image)
         situation = self._situation(at, number, tuple(came))
         return replace(situation, merged=tuple(thing.report(at) for thing in merged)), ids
 
     def _matches(
         self, of: NDArray[np.int32], count: int, image: FrameImage, things: list[Pipeline]
     ) -> dict[int, Pipeline]:
-        """Return which of the things each detected object is, by the pixels that both have."""
+        """Return which of the things each detected object is, by the pixels that both have.
+
+        Pixels beside each other count: a moving camera shows thin things a pixel beside where they were.
+        """
+        from scipy.ndimage import binary_dilation
         from scipy.optimize import linear_sum_assignment
 
         assert self._reference is not None
-        shared = np.zeros((count, len(things)))
+        shared, square = np.zeros((count, len(things))), np.ones((3, 3))
+        around = [binary_dilation(of == k, square) for k in range(count)]
+        sizes = np.bincount(of[of >= 0], minlength=count)
         above = np.flatnonzero(of >= 0)
         points = image.places(above, self._back)
         for column, thing in enumerate(things):
@@ -481,13 +600,26 @@ class Tracker:
                 own = self._reference.owner == thing.slot
             elif thing.found:
                 own.ravel()[above] = thing.contains(points, self.settings.margin)
-            both = np.bincount(of[own & (of >= 0)], minlength=count)
-            shared[:, column] = both / np.maximum(np.bincount(of[of >= 0], minlength=count) + own.sum() - both, 1)
+            near = binary_dilation(own, square)
+            both = np.array([near[of == k].sum() + around[k][own].sum() for k in range(count)]) / 2
+            shared[:, column] = both / np.maximum(sizes + own.sum() - both, 1)
         pairs = zip(*linear_sum_assignment(-shared), strict=True)
         return {int(k): things[column] for k, column in pairs if shared[k, column] >= SAME_PIXELS}
 
     def _remodelled(self, thing: Pipeline, new: Pipeline) -> Pipeline:
-        """Replace a pipeline by another one of the same thing, and return it."""
+        """Replace a pipeline by another one of the same thing, and return it.
+
+        What the frame does not show of a thing at rest stays: a camera that moves may have seen it before.
+        """
+        assert self._last is not None and self._view is not None
+        if not thing.active:
+            new.rest = thing.rest
+            points = thing.placed_points
+            hidden = self._view.hides(points, self._last[1].depth, MIN_BEFORE)
+            if hidden.any() and thing.cloud.colours is not None:
+                new.extend(
+                    points[hidden], thing.cloud.colours[hidden].astype(np.float32), self.settings.detection.outlines
+                )
         moves = thing.active and float(np.linalg.norm(new.pose[:3, 3] - thing.pose[:3, 3])) > self.settings.still
         new.since, new.at = (new.at if moves else thing.since), thing.at
         self._things[self._things.index(thing)] = new
@@ -586,6 +718,9 @@ class Tracker:
     def _start(self, thing: Pipeline) -> None:
         """Let a thing move: its pixels are free."""
         assert self._reference is not None
+        for other in self._things:
+            if other is not thing and not other.active and other.lies_on(thing):
+                other.load_onto(thing)
         thing.active = True
         self._reference.take(thing.slot, thing.beneath, {other.slot for other in self._things if other is not thing})
         thing.beneath = None
@@ -593,7 +728,10 @@ class Tracker:
     def _follow(self, image: FrameImage, changes: Changes, at: float, seconds: float) -> None:
         """Look for the things that move, and for those whose places are mostly hidden."""
         assert self._reference is not None and self._view is not None
-        moving = [thing for thing in self._things if thing.active]
+        for thing in self._things:
+            if not thing.active and thing.seen_at < at and thing.is_carried_off(MIN_WAY):
+                self._start(thing)
+        moving = sorted((thing for thing in self._things if thing.active), key=lambda thing: -thing.reach)
         doubtful = [
             thing
             for thing in self._things
@@ -610,7 +748,10 @@ class Tracker:
         tints = image.colour.reshape(-1, 3)[free].astype(np.float64)
 
         def follow(thing: Pipeline) -> tuple[Pipeline, Estimate, float, float]:
-            taken = (same & (reference.owner != thing.slot)) | others
+            own = reference.owner == thing.slot
+            if thing.carrier is not None:  # which may have been given its pixels
+                own |= reference.owner == thing.carrier.slot
+            taken = (same & ~own) | others
             return thing, *thing.follow(image, view, taken, points, tints, seconds, self._noise)
 
         others = np.zeros(same.shape, np.bool_)
@@ -618,11 +759,13 @@ class Tracker:
             if not thing.found:
                 self._carry(thing)
         for thing, found, fit, visible in self._each(follow, moving):
+            if not thing.active:  # it was set down with what it lies on
+                continue
             if not self._is_certain(thing, found, fit, visible, at, seconds, points):
                 if self._is_back(thing, image, same, at):
                     self._claim(thing, image, changes)
                     continue
-                if thing.found:
+                if thing.found or thing.is_carried_off(MIN_WAY):
                     self._carry(thing)
                 if self._camera_moves(at) and not self._outline.beyond(thing.pose[None, :2, 3])[0]:
                     thing.out_of_view |= thing.is_leaving(view, seconds)
@@ -632,7 +775,9 @@ class Tracker:
             thing.visible = visible
             if thing.is_still(at) and (visible > 0.6 or at - self._hand_at > limits.still_for):
                 self._settle(thing)
-                self._claim(thing, image, changes)
+                loads = [load for load in moving if self._is_set_down_with(load, thing, image, same, at)]
+                for each in (thing, *loads):
+                    self._claim(each, image, changes)
         for thing in moving:  # what is theirs is not another thing that left its place unseen
             if thing.found:
                 others.ravel()[free[thing.contains(points, limits.margin)]] = True
@@ -699,8 +844,27 @@ class Tracker:
         taken = same & (self._reference.owner != thing.slot)
         return thing.seen_at_place(image, self._view, taken, self._noise, thing.last_rest)
 
+    def _is_set_down_with(
+        self, load: Pipeline, carrier: Pipeline, image: FrameImage, same: NDArray[np.bool_], at: float
+    ) -> bool:
+        """Let a thing that was not found rest on what carried it and was set down, if the frame does not deny it."""
+        assert self._reference is not None and self._view is not None
+        if not load.active or load.found or load.carrier is not carrier or not load.is_carried_off(MIN_WAY):
+            return False
+        load.ride()
+        taken = same & ~np.isin(self._reference.owner, (load.slot, carrier.slot))
+        agreement, exposed = load.seen_at_place(image, self._view, taken, self._noise)
+        if exposed > EXPOSED and agreement < ABSENT:
+            return False
+        load.moved_to(load.pose, at, agreement)
+        self._settle(load)
+        return True
+
     def _carry(self, thing: Pipeline) -> None:
-        """Move a thing that left its place and is not seen with the hand that may hold it."""
+        """Move a thing that left its place and is not seen with what it lay on, or with the hand that may hold it."""
+        if thing.is_carried_off(MIN_WAY):
+            thing.ride()
+            return
         step = self._hands.carried(thing.pose[:3, 3], thing.reach)
         if step is not None:
             thing.carry(step)
@@ -718,13 +882,17 @@ class Tracker:
         thing.rest = next(self._rests)
 
     def _claim(self, thing: Pipeline, image: FrameImage, changes: Changes) -> None:
-        """Assign the changed pixels within the box of a thing that has come to rest to this thing."""
+        """Assign the changed pixels within the box of a thing that has come to rest to this thing.
+
+        What it lies on may own pixels that show the thing.
+        """
         from deixis.perception.tracking.kernels import SAME
 
         assert self._reference is not None and self._view is not None
-        free = np.flatnonzero(~changes.same & (image.depth > 0))
+        below = [other.slot for other in self._things if not other.active and thing.lies_on(other)]
+        free = np.flatnonzero((~changes.same | np.isin(self._reference.owner, below)) & (image.depth > 0))
         points = image.places(free, self._view.back)
-        things, of = self._things_around(free, points, thing.settled_at)
+        things, of = self._things_around(image, free, points, thing.settled_at)
         own = free[(of == things.index(thing)) & thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
         thing.beneath = self._reference.give(own, thing.slot, image)
         changes.state.ravel()[own] = SAME
@@ -801,6 +969,9 @@ class Tracker:
             each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
             colours = reference.colour.reshape(-1, 3)[each]
             thing.extend(reference.points(each, view), colours, limits.detection.outlines)
+        ends = thing.unseen_ends(hidden_lengths(thing, resting, reference, view))
+        length, width, _ = thing.oriented.extents
+        thing.suppose(ends, *(likely_length(length, width, length + sum(ends)) if any(ends) else (length, 0.0)))
         if merged:
             thing.take_name(merged, at)
         self._things = [other for other in self._things if other not in merged]
@@ -843,9 +1014,7 @@ class Tracker:
         assert self._view is not None
         return self._view.back
 
-    def _look_for_new(
-        self, cloud: PointCloud, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
-    ) -> tuple[str, ...]:
+    def _look_for_new(self, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float) -> tuple[str, ...]:
         """Segment what changed and stays as it is; return the ids of new things."""
         from deixis.perception.tracking.kernels import FARTHER
 
@@ -866,7 +1035,7 @@ class Tracker:
         for thing in self._things:
             if not thing.active:  # what is nearer than a thing, or of another colour, may lie on it
                 owner[(owner == thing.slot) & thing.contains(points, limits.margin)] = ON_ITS_OWNER
-        things, of = self._things_around(free, points, at)
+        things, of = self._things_around(image, free, points, at)
         left = np.ones(len(free), np.bool_)
         for number, thing in enumerate(things):
             own = of == number
@@ -879,18 +1048,18 @@ class Tracker:
         if untried < limits.least_pixels or at - self._detected_at < DETECTION_PAUSE:
             return ()
         self._detected_at = at
-        return self._segment(cloud, image, changes, free, at)
+        return self._segment(image, changes, free, at)
 
     def _things_around(
-        self, pixels: NDArray[np.intp], points: NDArray[np.float64], at: float
+        self, image: FrameImage, pixels: NDArray[np.intp], points: NDArray[np.float64], at: float
     ) -> tuple[list[Pipeline], NDArray[np.intp]]:
         """Return the things that were found, and the number of the one that each pixel may show, or -1.
 
-        Of several things whose boxes contain a point, it is the smallest one whose own points are seen there; else the
-        largest one, on which the others lie.
+        Of several things whose boxes contain a point, it is the one whose points agree best with it in place and
+        colour, as for a knife on a plate that were set down together.
         """
         limits = self.settings
-        things = [thing for thing in self._things if thing.found or not thing.active]
+        things = [thing for thing in self._things if thing.found or not thing.active or thing.is_carried_off(MIN_WAY)]
         things.sort(key=lambda thing: float(np.prod(thing.oriented.extents)))
         if not things:
             return things, np.full(len(pixels), -1)
@@ -904,23 +1073,13 @@ class Tracker:
         of = np.where(inside.any(axis=0), inside.argmax(axis=0), -1)
         several = np.flatnonzero(inside.sum(axis=0) > 1)
         if len(several):
-            shown = inside[:, several]
-            largest = len(things) - 1 - shown[::-1].argmax(axis=0)
-            for number in np.flatnonzero(shown.any(axis=1)):
-                shown[number] &= self._footprint(things[number]).ravel()[pixels[several]]
-            of[several] = np.where(shown.any(axis=0), shown.argmax(axis=0), largest)
+            unlike = np.full((len(things), len(several)), np.inf)
+            for number in np.flatnonzero(inside[:, several].any(axis=1)):
+                own = inside[number, several]
+                tints = image.colour.reshape(-1, 3)[pixels[several[own]]].astype(np.float64)
+                unlike[number, own] = things[number].unlikeness(points[several[own]], tints)
+            of[several] = unlike.argmin(axis=0)
         return things, of
-
-    def _footprint(self, thing: Pipeline) -> NDArray[np.bool_]:
-        """Return a mask (r, c) of the pixels at which the points of a thing are seen, and of those around them."""
-        from scipy.ndimage import binary_dilation
-
-        assert self._view is not None
-        mask = np.zeros(self._view.level.shape, np.bool_)
-        pixels, _ = self._view.pixels(thing.placed_points)
-        mask.ravel()[pixels] = True
-        around: NDArray[np.bool_] = binary_dilation(mask, np.ones((3, 3)), iterations=2)
-        return around
 
     def _edges(self, pixels: NDArray[np.intp], at: float) -> NDArray[np.bool_]:
         """Return a mask of the pixels in strips of one or two pixels beside things, which their edges leave there.
@@ -939,13 +1098,11 @@ class Tracker:
         found: NDArray[np.bool_] = (~opened & beside).ravel()[pixels]
         return found
 
-    def _segment(
-        self, cloud: PointCloud, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float
-    ) -> tuple[str, ...]:
+    def _segment(self, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float) -> tuple[str, ...]:
         """Detect objects among the free pixels, which lost things and new ones then have."""
         from scipy.ndimage import binary_dilation
 
-        reference = self._reference
+        reference, cloud = self._reference, self._mean()
         assert reference is not None and self._frame is not None and cloud.organised is not None
         mask = np.zeros(image.depth.shape, np.bool_)
         mask.ravel()[free] = True
@@ -1077,6 +1234,25 @@ def _detected(scene: Scene) -> Detection:
         places[old] = new
     oriented = tuple(thing.oriented for thing in scene.objects if thing.oriented is not None)
     return replace(found, labels=places[found.labels], boxes=scene.boxes, oriented=oriented)
+
+
+def _have_one_hue(tints: NDArray[np.float64], others: NDArray[np.float64]) -> bool:
+    """Return True if colours (k, 3) and others (m, 3) are those of one thing, in any light."""
+    one, other = np.median(tints, axis=0), np.median(others, axis=0)
+    across = one - (one @ other) / max(float(other @ other), 1e-9) * other
+    return bool(np.linalg.norm(across) < SAME_HUE)
+
+
+def _rejoined(found: Detection, joined: list[int], outlines: OutlineSettings) -> Detection:
+    """Return a detection in which object k is a part of object ``joined[k]``, numbered from 0 again."""
+    left = sorted(set(joined))
+    number = np.array([*(left.index(whole) for whole in joined), BACKGROUND], np.int32)
+    labels, boxes, oriented = number[found.labels], found.boxes[left].copy(), [found.oriented[k] for k in left]
+    for whole in {whole for k, whole in enumerate(joined) if k != whole}:
+        k = left.index(whole)
+        points = moved(found.cloud.points[labels == k].astype(np.float64), found.frame)
+        boxes[k], oriented[k] = upright_box(points, outlines, None), oriented_box(points, outlines, None)
+    return replace(found, labels=labels, boxes=boxes, oriented=tuple(oriented))
 
 
 def _noise(depth: NDArray[np.float32], level: NDArray[np.float32]) -> float:

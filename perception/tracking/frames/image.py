@@ -203,6 +203,33 @@ class TableView:
         within = (depth > 0) & (row >= 0) & (column >= 0) & (row < rows) & (column < columns)
         return np.asarray(row[within] * columns + column[within]), np.asarray(depth[within])
 
+    def hides(self, places: NDArray[np.float64], depth: NDArray[np.float32], margin: float) -> NDArray[np.bool_]:
+        """Return True for each place that is out of the image, or behind something.
+
+        Parameters
+        ----------
+        places
+            Places of shape (n, 3) in the table's frame, in metres.
+        depth
+            Depths (r, c) of a frame of this view, 0 without a measurement.
+        margin
+            Distance in metres by which a surface must be nearer than a place that it hides.
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (n,).
+        """
+        seen = places @ self.matrix.T + self.offset
+        away = np.maximum(seen[:, 2], 1e-9)
+        column, row = np.rint(seen[:, :2] / away[:, None]).clip(-1, 1e6).astype(np.int64).T
+        rows, columns = depth.shape
+        hidden = (seen[:, 2] <= 0) | (row < 0) | (column < 0) | (row >= rows) | (column >= columns)
+        within = np.flatnonzero(~hidden)
+        measured = depth[row[within], column[within]]
+        hidden[within] = (measured > 0) & (measured < away[within] - margin)
+        return np.asarray(hidden)
+
 
 def table_view(optics: Optics, back: NDArray[np.float64], shape: tuple[int, int]) -> TableView:
     """Return the view of a table by a camera.

@@ -219,6 +219,25 @@ class Reference:
         self.tries.ravel()[pixels] = 0
         return before
 
+    def assign(self, pixels: NDArray[np.intp], owner: int, image: FrameImage, tolerance: float, noise: float) -> None:
+        """Give pixels to an owner that a frame shows, and keep the means of many frames where it agrees with them.
+
+        Parameters
+        ----------
+        pixels
+            Flat indices of shape (k,).
+        owner
+            New owner.
+        image
+            The frame.
+        tolerance, noise
+            As in :meth:`compared`.
+        """
+        depth, known = image.depth.ravel()[pixels], self.depth.ravel()[pixels]
+        differs = np.abs(depth - known) > np.maximum(tolerance, noise * depth**2)
+        self.give(pixels[differs & (depth > 0)], owner, image)
+        self.owner.ravel()[pixels] = owner
+
     def take(self, owner: int, beneath: Beneath | None, owners: set[int]) -> None:
         """Take all pixels from an owner: what was beneath comes back, the rest is unknown.
 

@@ -484,11 +484,14 @@ class FlatThing:
         return length >= MIN_SLENDERNESS * width
 
     def _own_line(self) -> Mask:
-        """Return a mask of the pixels at which the thing would be seen if it were longer."""
-        if not self._is_slender:
+        """Return a mask of the pixels at which the thing would be seen if it were longer, up to ``MAX_LENGTH``."""
+        longer = MAX_LENGTH - self._thing.oriented.extents[0]
+        if not self._is_slender or longer <= 0:
             return np.zeros(self._level.shape, np.bool_)
-        across = turned_axes(self._thing.oriented.yaw)[1] @ self._thing.pose[:3, :3].T
-        return self._strip(self._thing.placed_corners @ across, across)
+        along, across, _ = turned_axes(self._thing.oriented.yaw) @ self._thing.pose[:3, :3].T
+        corners = self._thing.placed_corners
+        ends = np.sort(corners @ along)[[0, -1]] + np.array([-longer, longer])
+        return self._strip(corners @ across, across) & self._strip(ends, along)
 
     def _line_to(self, thing: Pipeline) -> Mask:
         """Return a mask of the pixels at which a long thing would be seen that ends in this thing and in another.

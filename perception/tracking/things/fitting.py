@@ -42,9 +42,10 @@ def fits(
     taken: NDArray[np.bool_],
     noise: float,
 ) -> Iterator[Fit]:
-    """Yield the best pose of a thing around each direction about the vertical in which it may stand.
+    """Yield the best poses of a thing around each direction about the vertical in which it may stand.
 
-    The thing keeps its pose, and its particle filter begins there again.
+    One is that of its particle filter, and one lies as it last did: the filter lets a thin thing tilt out of the few
+    pixels that show it. The thing keeps its pose, and its particle filter begins there again.
 
     Parameters
     ----------
@@ -75,8 +76,12 @@ def fits(
         start[:3, 3] = middle
         thing.put(start)
         found, agreement, visible = thing.follow(image, view, taken, points, tints, 0.0, noise)
-        explained = float(thing.contains(points, thing.settings.margin, found.pose).mean())
-        yield Fit(found.pose, agreement, visible, explained)
+        for pose, agrees, seen in (
+            (found.pose, agreement, visible),
+            thing.laid(start, image, view, taken, points, noise),
+        ):
+            explained = float(thing.contains(points, thing.settings.margin, pose).mean())
+            yield Fit(pose, agrees, seen, explained)
     thing.put(thing.pose)
 
 

@@ -70,6 +70,9 @@ MIN_POINTS_BEYOND = 5
 NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""
 
+MIN_ON = 0.7
+"""Minimum share of the points of a thing inside the box of another one, seen from above, at which it lies on that one."""
+
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops by half."""
 
@@ -148,6 +151,12 @@ class Pipeline:
         self._velocity = np.zeros(3)
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
         self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
+        self._carrier: tuple[Pipeline, NDArray[np.float64]] | None = None  # what it lay on, and its pose on it
+        self._ends_seen = (False, False)  # against and along the long axis of the box
+        self._unseen, self._spread = (
+            (0.0, 0.0),
+            0.0,
+        )  # supposed lengths beyond the two ends of the box, and their spread
 
     def _choose_points(self) -> None:
         """Choose the points of the thing that are compared with frames."""
@@ -194,6 +203,64 @@ class Pipeline:
         self._carried.append(self.pose[:3, 3])
         self._filter.reset(self.pose)
 
+    def lies_on(self, other: Pipeline) -> bool:
+        """Return True if most of the thing lies within the box of a larger one, seen from above.
+
+        Parameters
+        ----------
+        other
+            The thing that may carry it.
+
+        Returns
+        -------
+        bool
+            False for a thing beside the other one.
+        """
+        points = self.placed_points
+        points[:, 2] = other.placed_corners[:, 2].mean()
+        return self.reach < other.reach and bool(other.contains(points, 0.0).mean() > MIN_ON)
+
+    @property
+    def carrier(self) -> Pipeline | None:
+        """Larger thing on which it lay when that one began to move, until it comes to rest."""
+        return None if self._carrier is None else self._carrier[0]
+
+    def load_onto(self, carrier: Pipeline) -> None:
+        """Note what the thing lies on, with which it moves.
+
+        Parameters
+        ----------
+        carrier
+            The other thing, where it rests.
+        """
+        self._carrier = carrier, np.linalg.inv(carrier.pose) @ self.pose
+
+    def is_carried_off(self, least: float) -> bool:
+        """Return True if what the thing lay on is found elsewhere.
+
+        Parameters
+        ----------
+        least
+            Distance in metres from which a place is another one.
+
+        Returns
+        -------
+        bool
+            False for a thing that lay on the table.
+        """
+        if self._carrier is None or not self._carrier[0].found:
+            return False
+        carrier, on_it = self._carrier
+        away = (carrier.pose @ on_it)[:3, 3] - self._rest[:3, 3]
+        return bool(np.linalg.norm(away) > least)
+
+    def ride(self) -> None:
+        """Move the thing with what it lay on."""
+        assert self._carrier is not None, "only a thing that is carried off rides"
+        carrier, on_it = self._carrier
+        self.pose = carrier.pose @ on_it
+        self._filter.reset(self.pose)
+
     @property
     def placed_points(self) -> NDArray[np.float64]:
         """Its points where they are now in the table's frame, shape (n, 3), in metres."""
@@ -206,8 +273,8 @@ class Pipeline:
         corners: NDArray[np.float64] = self.oriented.corners @ self.pose[:3, :3].T + self.pose[:3, 3]
         return corners
 
-    def near_since(self, place: NDArray[np.float64], before: float) -> float:
-        """Return since when the middle of a thing that has not moved has been near a place.
+    def near_for(self, place: NDArray[np.float64], before: float) -> float:
+        """Return for how long the middle of a thing that has not moved has been near a place.
 
         Parameters
         ----------
@@ -219,15 +286,11 @@ class Pipeline:
         Returns
         -------
         float
-            Time in seconds; infinite if it was not near.
+            Time in seconds; 0 if it was never near.
         """
-        since = np.inf
-        for at, middle in reversed(self._middles):
-            if at < before:
-                if np.linalg.norm(middle - place) > NEAR:
-                    break
-                since = at
-        return since
+        times = [min(at, before) for at, _ in self._middles] + [before]
+        lengths = zip(self._middles, times, times[1:], strict=False)
+        return sum(end - at for (_, middle), at, end in lengths if np.linalg.norm(middle - place) <= NEAR)
 
     def take_name(self, parts: Sequence[Pipeline], at: float) -> None:
         """Take the name of one of the parts that were merged into the thing, if it was known longer by that name.
@@ -243,7 +306,7 @@ class Pipeline:
             Time in seconds when they were merged.
         """
         place = self.pose[:3, 3]
-        known = min([self, *parts], key=lambda part: (part.near_since(place, at), part.at))
+        known = min([self, *parts], key=lambda part: (-part.near_for(place, at), part.at))
         self.id, known.id = known.id, self.id
         self.at, self.since = known.at, min(self.since, known.since)
 
@@ -397,6 +460,51 @@ class Pipeline:
         noise
             Standard deviation of depths at one metre.
         """
+        if self.seen_at_place(image, view, taken, noise)[1] < MIN_ALIGNED:
+            return
+        pose, gain = self._shifted(self.pose, image, view, taken, own, noise)
+        if gain > MIN_BETTER:
+            self.pose = self._rest = pose
+            self._filter.reset(pose)
+
+    def laid(
+        self,
+        start: NDArray[np.float64],
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        own: NDArray[np.float64],
+        noise: float,
+    ) -> tuple[NDArray[np.float64], float, float]:
+        """Return the best pose of the thing around another one, from which it moves along the table and turns about z.
+
+        Parameters
+        ----------
+        start
+            Pose (4, 4) in which it lies on the table.
+        image, view, taken, own, noise
+            As in :meth:`align`.
+
+        Returns
+        -------
+        tuple
+            The pose, the share of the points that agree, of those that nothing hides, and the share that agrees, of
+            those within the image.
+        """
+        pose, _ = self._shifted(start, image, view, taken, own, noise)
+        inliers, exposed, inside = self._seen(pose[:3, 3], _quaternion(pose), image, view, taken, noise)
+        return pose, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
+
+    def _shifted(
+        self,
+        start: NDArray[np.float64],
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        own: NDArray[np.float64],
+        noise: float,
+    ) -> tuple[NDArray[np.float64], float]:
+        """Return the best pose that is shifted along the table and turned about z from another, and its gain."""
         from deixis.perception.tracking.kernels import covered
 
         own = own[np.linspace(0, len(own) - 1, min(len(own), self.settings.particles.points)).astype(np.int64)]
@@ -409,27 +517,23 @@ class Pipeline:
             found += covered(places, turns, own, centre, self.oriented.yaw, half)
             return found
 
-        if self.seen_at_place(image, view, taken, noise)[1] < MIN_ALIGNED:
-            return
-        moved, turned = np.zeros((1, 3)), _quaternion(self.pose)[None]
-        best = first = float(weigh(self.pose[None, :3, 3], turned)[0])
+        moved, turned = np.zeros((1, 3)), _quaternion(start)[None]
+        best = first = float(weigh(start[None, :3, 3], turned)[0])
         step, directions = np.array(ALIGN_STEP), np.array(list(itertools.product((-1, 0, 1), repeat=3)))
         while step[0] >= ALIGN_END:
             tried = moved + step * directions
-            places = self.pose[:3, 3] + np.column_stack([tried[:, :2], np.zeros(len(tried))])
+            places = start[:3, 3] + np.column_stack([tried[:, :2], np.zeros(len(tried))])
             scores = weigh(places, turned_by(np.outer(tried[:, 2], (0.0, 0.0, 1.0)), turned.repeat(len(tried), axis=0)))
             if scores.max() > best:
                 best, moved = float(scores.max()), tried[scores.argmax()][None]
             else:
                 step = step / 2
-        if best > first + MIN_BETTER:
-            x, y, angle = moved[0]
-            cosine, sine = np.cos(angle), np.sin(angle)
-            pose = self.pose.copy()
-            pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ pose[:3, :3]
-            pose[:2, 3] += x, y
-            self.pose = self._rest = pose
-            self._filter.reset(pose)
+        x, y, angle = moved[0]
+        cosine, sine = np.cos(angle), np.sin(angle)
+        pose = start.copy()
+        pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ pose[:3, :3]
+        pose[:2, 3] += x, y
+        return pose, best - first
 
     def likeness(self, tints: NDArray[np.float64], shade: float = SHADE_SPREAD) -> NDArray[np.float64]:
         """Return how well colours agree with those of the thing.
@@ -596,6 +700,7 @@ class Pipeline:
         turn = self.pose[:3, :3]
         own = self.cloud.points.astype(np.float64) @ turn.T + self.pose[:3, 3]
         everything = np.concatenate([own, points])
+        ends = self._supposed_ends()
         circle = circle_around(everything) or circle_around(own)
         box = upright_box(everything, settings, circle)
         around = oriented_box(everything, settings, circle)
@@ -615,10 +720,60 @@ class Pipeline:
         )
         self.pose = self.pose.copy()
         self.pose[:3, 3] = middle
+        self._ends_seen = False, False
+        if any(self._unseen):  # they end where they were supposed to end
+            along, (first, last) = self._along_in_table(), self._supposed_ends(seen=True)
+            before, after = np.sort(ends @ along)
+            self._unseen = max(float(first @ along - before), 0.0), max(float(after - last @ along), 0.0)
+            self._spread = self._spread if any(self._unseen) else 0.0
         self._rest = self.pose
-        self._middles.append((self.seen_at, self.pose[:3, 3]))
+        self._middles.append((self.seen_at, self.report(self.seen_at).centre))
         self._choose_points()
         self._filter.reset(self.pose)
+
+    def unseen_ends(self, hidden: tuple[float, float]) -> tuple[float, float]:
+        """Return how far the thing may go on unseen, where no view has shown its end since its box was extended.
+
+        Parameters
+        ----------
+        hidden
+            Lengths in metres that the present view hides beyond its two ends; 0 where it shows the end.
+
+        Returns
+        -------
+        tuple
+            Lengths in metres.
+        """
+        first, last = (seen or not length for seen, length in zip(self._ends_seen, hidden, strict=True))
+        self._ends_seen = first, last
+        return 0.0 if first else hidden[0], 0.0 if last else hidden[1]
+
+    def suppose(self, ends: tuple[float, float], length: float, spread: float) -> None:
+        """Suppose that the thing goes on where something hides its ends, until more of it is seen.
+
+        Parameters
+        ----------
+        ends
+            Lengths in metres that may be hidden beyond the end against the long axis of the box and the one along it.
+        length, spread
+            Likely length of the whole thing and its standard deviation, in metres.
+        """
+        share = max(length - self.oriented.extents[0], 0.0) / max(sum(ends), 1e-9)
+        self._unseen, self._spread = (share * ends[0], share * ends[1]), spread
+        self._middles.append((self.seen_at, self.report(self.seen_at).centre))
+
+    def _along_in_table(self) -> NDArray[np.float64]:
+        """Return the direction (3,) of the long axis of the box in the table's frame."""
+        along: NDArray[np.float64] = self.pose[:3, :3] @ turned_axes(self.oriented.yaw)[0]
+        return along
+
+    def _supposed_ends(self, seen: bool = False) -> NDArray[np.float64]:
+        """Return the middles (2, 3) of the ends of the thing, or of what is seen of it, in the table's frame."""
+        middle = self.pose[:3, :3] @ np.array(self.oriented.centre) + self.pose[:3, 3]
+        unseen = np.zeros(2) if seen else np.array(self._unseen)
+        reach = np.array([-1, 1]) * (self.oriented.extents[0] / 2 + unseen)
+        ends: NDArray[np.float64] = middle + reach[:, None] * self._along_in_table()
+        return ends
 
     def stand(self) -> None:
         """Extend the box of the thing down to the table, on which it stands with a hidden foot."""
@@ -706,7 +861,7 @@ class Pipeline:
         if np.linalg.norm(pose[:3, 3] - self._rest[:3, 3]) > 2.5 * self.settings.still:
             self.since = self._places[0][0]
         self.pose, self.active, self._rest = pose, False, pose
-        self.completed, self.views = False, 0
+        self.completed, self.views, self._carrier = False, 0, None
         self._suspected.clear()
         self.settled_at = self._places[-1][0]
         self._places.clear()
@@ -744,12 +899,21 @@ class Pipeline:
         """
         turn = self.pose[:3, :3]
         yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
-        middle = self.pose[:3, :3] @ np.array(self.oriented.centre) + self.pose[:3, 3]
-        oriented = OrientedBox(tuple(middle.tolist()), self.oriented.yaw + yaw, self.oriented.extents)
+        along, (before, after) = turned_axes(self.oriented.yaw)[0], self._unseen
+        shift, more = (after - before) / 2 * along, before + after
+        length, width, height = self.oriented.extents
+        whole = OrientedBox(  # with what is supposed
+            tuple((np.array(self.oriented.centre) + shift).tolist()), self.oriented.yaw, (length + more, width, height)
+        )
+        pose = self.pose.copy()
+        pose[:3, 3] += turn @ shift
+        middle = turn @ np.array(whole.centre) + self.pose[:3, 3]
+        oriented = OrientedBox(tuple(middle.tolist()), whole.yaw + yaw, whole.extents)
         if np.trace(turn) > 1 + 2 * np.cos(np.deg2rad(3.0)):
-            box = np.stack([self.pose[:3, 3] - self.half, self.pose[:3, 3] + self.half])
+            half = self.half + np.abs(along) * more / 2
+            box = np.stack([pose[:3, 3] - half, pose[:3, 3] + half])
         else:
-            corners = self.oriented.corners @ turn.T + self.pose[:3, 3]
+            corners = whole.corners @ turn.T + self.pose[:3, 3]
             box = np.stack([corners.min(axis=0), corners.max(axis=0)])
         points = self.cloud.points @ turn.T.astype(np.float32) + self.pose[:3, 3].astype(np.float32)
         faded = 0.5 ** (max(at - self.seen_at, 0.0) / MEMORY_OF_THE_HIDDEN)
@@ -758,13 +922,14 @@ class Pipeline:
             box=box,
             oriented=oriented,
             cloud=PointCloud(points, self.cloud.colours),
-            pose=self.pose.copy(),
+            pose=pose,
             certainty=float(np.clip(self.agreement * faded, 0.01, 1.0)),
             since=at if self.active and self.found else self.since,
             first_seen=self.at,
             seen_at=self.seen_at,
             state=self.state,
             moving=self.active and self.found,
+            spread=self._spread / 2,
         )
 
 

@@ -11,14 +11,16 @@ import numpy as np
 import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.detect import detect
+from deixis.perception.detection.detect import BACKGROUND, Detection, detect
 from deixis.perception.errors import CloudError
+from deixis.perception.scene import OrientedBox
 from deixis.perception.simulator.films.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.frames.image import image_of, optics_of
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER
+from deixis.perception.tracking.things.pipeline import Pipeline
 from deixis.perception.tracking.tracker import Tracker
 
 pytest.importorskip("open3d")
@@ -132,19 +134,20 @@ def test_table_laid_anew_between_two_frames_is_looked_at_again() -> None:
         assert all(thing.state == "seen" for thing in tracker.update(second.cloud, second.at + 0.2).things)
 
 
-def test_whole_look_merges_the_piece_of_a_thing() -> None:
-    frame = next(iter(film([PLATE, MUG], [Rest(0.2)]).frames(5, scale=0.4)))
+def cut_rim(frame: FilmedFrame) -> Detection:
+    """Return the detection of a frame with a plate and a mug, in which a part of the rim of the plate is an object."""
     found = detect(frame.cloud)
     plate = np.flatnonzero(found.labels == 0)
     rim = plate[frame.cloud.points[plate, 0] < np.quantile(frame.cloud.points[plate, 0], 0.3)]
     labels = found.labels.copy()
     labels[rim] = len(found.boxes)
-    cut = replace(
-        found,
-        labels=labels,
-        boxes=np.concatenate([found.boxes, found.boxes[:1]]),
-        oriented=(*found.oriented, found.oriented[0]),
-    )
+    boxes = np.concatenate([found.boxes, found.boxes[:1]])
+    return replace(found, labels=labels, boxes=boxes, oriented=(*found.oriented, found.oriented[0]))
+
+
+def test_whole_look_merges_the_piece_of_a_thing() -> None:
+    frame = next(iter(film([PLATE, MUG], [Rest(0.2)]).frames(5, scale=0.4)))
+    found, cut = detect(frame.cloud), cut_rim(frame)
     with Tracker(HALF) as tracker:
         tracker.update(frame.cloud, 0.0)
         now, ids = tracker.look_again(cut.scene())
@@ -163,14 +166,16 @@ def test_work_grows_with_what_moves_and_ends_with_it() -> None:
     assert max(moving) == 1  # the plate rests, which costs nothing
     with Tracker(HALF) as tracker:
         needed: list[int] = []
-        kept: list[weakref.ref[Any]] = []
+        ever: list[weakref.ref[Any]] = []
         for frame in film([PLATE, MUG], [Rest(0.2), TakeAway("mug"), Rest(1.0)]).frames(3, scale=0.4):
             tracker.update(frame.cloud, frame.at)
             needed.append(tracker.particles)
-            kept = kept or [weakref.ref(thing) for thing in tracker._things]
+            ever += [weakref.ref(thing) for thing in tracker._things]
         assert needed[0] == 0 < max(needed) and needed[-1] == 0
         gc.collect()
-        assert [each() is None for each in kept] == [False, True], "the pipeline of the mug is freed with its memory"
+        kept = {each() for each in ever} - {None}
+        assert kept == set(tracker._things), "the pipeline of the mug is freed with its memory"
+        assert [thing.id for thing in tracker._things] == ["t1"]
         assert np.unique(tracker.owners()).tolist() == [-1, 0]
 
 
@@ -194,15 +199,19 @@ def table_without(count: int) -> PointCloud:
 def test_work_is_linear_in_what_left_and_ends_with_each(count: int) -> None:
     with Tracker(HALF) as tracker:
         assert len(tracker.update(table_without(0), 0.0).things) == len(MANY)
-        kept = {thing.id: weakref.ref(thing) for thing in tracker._things}
+        names, ever = {thing.id for thing in tracker._things}, [weakref.ref(thing) for thing in tracker._things]
         tracker.update(table_without(count), 0.2)
         each = [thing.particles for thing in tracker._things if thing.active]
         assert len(each) == count and tracker.particles == sum(each)
         assert all(150 <= particles <= 1200 for particles in each), "the work for each does not depend on the others"
-        went = [thing.id for at in (0.6, 1.1) for thing in tracker.update(table_without(count), at).went]
+        went = list[str]()
+        for at in (0.6, 1.1):
+            went += [thing.id for thing in tracker.update(table_without(count), at).went]
+            ever += [weakref.ref(thing) for thing in tracker._things]
         assert len(went) == count and tracker.particles == 0
         gc.collect()
-        assert {name for name, thing in kept.items() if thing() is None} == set(went)
+        assert {thing for each in ever if (thing := each()) is not None} == set(tracker._things)
+        assert {thing.id for thing in tracker._things} == names - set(went)
         assert len(np.unique(tracker.owners())) == 1 + len(MANY) - count, "their pixels are free"
 
 
@@ -241,7 +250,7 @@ def test_tries_count_only_when_no_hand_is_in_view(is_hand_in_view: bool) -> None
         image = image_of(frame.cloud, optics, HALF.stride)
         table = np.flatnonzero(reference.owner == TABLE)[:50]  # part of a thing that a hand is setting down
         tracker._hand_at = 0.5 if is_hand_in_view else 0.0
-        assert tracker._segment(frame.cloud, image, tracker._compare(image, 0.5), table, 0.5) == ()
+        assert tracker._segment(image, tracker._compare(image, 0.5), table, 0.5) == ()
         assert (reference.tries.ravel()[table] == (0 if is_hand_in_view else 1)).all()
 
 
@@ -268,3 +277,143 @@ def test_new_thing_far_from_hands_was_there_before() -> None:
         assert not tracker._is_revealed(thing, pixels), "a hand may have set it down"
         reference.owner.ravel()[pixels] = UNKNOWN_OWNER
         assert tracker._is_revealed(thing, pixels), "nothing was known there"
+
+
+def with_colour(cloud: PointCloud, of: np.ndarray, colour: tuple[int, int, int]) -> PointCloud:
+    assert cloud.colours is not None
+    colours = cloud.colours.copy()
+    colours[of] = colour
+    return replace(cloud, colours=colours)
+
+
+def test_pieces_of_the_first_look_are_joined_by_a_closer_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    frames = list(film([PLATE, MUG], [Rest(0.8)]).frames(10, scale=0.4))
+    with Tracker(HALF) as tracker:
+        monkeypatch.setattr(tracker, "_detected_table", lambda cloud: cut_rim(frames[0]))
+        assert len(tracker.update(frames[0].cloud, 0.0).things) == 3
+        later = [tracker.update(frame.cloud, frame.at) for frame in frames[1:]]
+        assert [thing.id for thing in later[-1].things] == ["t1", "t2"]
+        assert [thing.id for now in later for thing in now.merged] == ["t3"]
+        away = centres(later[-1], frames[-1])["t1"] - frames[-1].things[0].centre
+        assert np.linalg.norm(away) < 0.01
+
+
+@pytest.mark.parametrize("is_other_colour", [False, True])
+def test_closer_look_leaves_a_thing_of_another_colour_its_points(is_other_colour: bool) -> None:
+    frame = next(iter(film([PLATE, MUG], [Rest(0.2)]).frames(5, scale=0.4)))
+    whole, cut = detect(frame.cloud), cut_rim(frame)
+    rim = cut.labels == 2
+    cloud = with_colour(frame.cloud, rim, (40, 60, 160)) if is_other_colour else frame.cloud
+    with Tracker(HALF) as tracker:
+        tracker._detected_table = lambda cloud: cut  # type: ignore[method-assign]
+        tracker.update(cloud, 0.0)
+        found = tracker._reconciled(whole, cloud)
+        share = (found.labels[rim] == BACKGROUND).mean()
+        assert share > 0.9 if is_other_colour else share == 0
+        assert (found.labels[cut.labels == 0] == 0).all() and len(found.boxes) == 2
+
+
+@pytest.mark.parametrize("is_other_colour", [False, True])
+def test_closer_look_joins_pieces_of_one_colour_to_a_thing(is_other_colour: bool) -> None:
+    frame = next(iter(film([PLATE, MUG], [Rest(0.2)]).frames(5, scale=0.4)))
+    cut = cut_rim(frame)
+    rim = cut.labels == 2
+    cloud = with_colour(frame.cloud, rim, (40, 60, 160)) if is_other_colour else frame.cloud
+    with Tracker(HALF) as tracker:
+        tracker.update(frame.cloud, 0.0)
+        found = tracker._reconciled(replace(cut, cloud=cloud), cloud)
+        assert len(found.boxes) == (3 if is_other_colour else 2)
+        assert set(found.labels[rim]) == ({2} if is_other_colour else {0})
+        if not is_other_colour:
+            assert found.boxes[0] == pytest.approx(detect(frame.cloud).boxes[0], abs=0.01)
+
+
+def test_thin_thing_beside_its_pixels_is_the_same_thing() -> None:
+    knife = Placement("knife", "butter knife", 0.1, 0.0, seed=3)
+    frame = next(iter(film([PLATE, knife], [Rest(0.1)]).frames(scale=0.4)))
+    with Tracker(HALF) as tracker:
+        tracker.update(frame.cloud, 0.0)
+        optics, reference = optics_of(frame.cloud), tracker._reference
+        assert optics is not None and reference is not None
+        of = tracker._shown(detect(frame.cloud).labels, frame.cloud)
+        reference.owner = np.roll(reference.owner, 3, axis=1)
+        image = image_of(frame.cloud, optics, HALF.stride)
+        own = reference.owner == 2
+        assert (own & (of == 1)).sum() < 0.3 * (own | (of == 1)).sum(), "few pixels are at the same places"
+        assert tracker._matches(of, 2, image, tracker._things) == dict(enumerate(tracker._things))
+
+
+def test_points_of_the_table_are_not_in_the_model_of_a_thing() -> None:
+    fork = Placement("fork", "dinner fork", 0.1, 0.0, seed=3)
+    frame = next(iter(film([fork], [Rest(0.1)]).frames(scale=0.4)))
+    assert frame.cloud.labels is not None
+    own, table = (np.flatnonzero(frame.cloud.labels == label) for label in (1, 0))
+    low = table[np.abs(frame.camera.to_table(frame.cloud.points[table].astype(np.float64))[:, 2]) < 0.003]
+    with Tracker(HALF) as tracker:
+        tracker.update(frame.cloud, 0.0)
+        mixed = np.concatenate([own, low[: len(own)]])
+        left = tracker._without_table(frame.cloud, mixed)
+        assert np.isin(own, left).mean() > 0.95 and not np.isin(low, left).any()
+        mostly = np.concatenate([own, low[: 4 * len(own)]])
+        assert np.array_equal(tracker._without_table(frame.cloud, mostly), mostly)
+
+
+def test_new_model_keeps_what_is_hidden_now() -> None:
+    frame = next(iter(film([PLATE, MUG], [Rest(0.1)]).frames(scale=0.4)))
+    with Tracker(HALF) as tracker:
+        tracker.update(frame.cloud, 0.0)
+        plate = tracker._things[0]
+        found = detect(frame.cloud)
+        seen = np.flatnonzero(found.labels == 0)
+        seen = seen[frame.cloud.points[seen, 0] > np.median(frame.cloud.points[seen, 0])]
+        part = tracker._modelled(found, frame.cloud, seen, 0, "t1", 1, 0.5)
+        part.half, part.oriented = plate.half / 2, replace(plate.oriented, extents=(0.1, 0.1, 0.02))
+        assert tracker._last is not None and tracker._reference is not None
+        cloud, image, number = tracker._last
+        hidden = (tracker._reference.owner == 1) & (image.points[..., 0] <= np.median(frame.cloud.points[seen, 0]))
+        tracker._last = cloud, replace(image, depth=np.where(hidden, image.depth - 0.2, image.depth)), number
+        made = tracker._remodelled(plate, part)
+        assert made is tracker._things[0] and made.rest == plate.rest and made.at == plate.at
+        assert made.oriented.extents[0] > 0.9 * plate.oriented.extents[0]
+
+
+def test_pixels_in_two_boxes_are_those_of_the_thing_that_agrees() -> None:
+    frame = next(iter(film([PLATE], [Rest(0.1)]).frames(scale=0.4)))
+    with Tracker(HALF) as tracker:
+        tracker.update(frame.cloud, 0.0)
+        plate, reference = tracker._things[0], tracker._reference
+        optics = optics_of(frame.cloud)
+        assert reference is not None and optics is not None
+        pixels = np.flatnonzero(reference.owner == 1)
+        image = image_of(frame.cloud, optics, HALF.stride)
+        points = image.places(pixels, tracker._back)
+        shown = np.abs(points[:, 0] - plate.pose[0, 3]) < 0.01  # a blue knife across the plate
+        image.colour.reshape(-1, 3)[pixels[shown]] = 40, 60, 160
+        middle = points[shown].mean(axis=0)
+        cloud = PointCloud(
+            (points[shown] - middle).astype(np.float32), np.full((shown.sum(), 3), (40, 60, 160), np.uint8)
+        )
+        pose = np.eye(4)
+        pose[:3, 3] = middle
+        box = OrientedBox((0.0, 0.0, 0.0), np.pi / 2, (0.26, 0.1, 0.06))  # wider than the knife
+        tracker._things.append(Pipeline("t2", 2, cloud, np.array([0.05, 0.13, 0.03]), box, pose, 0.0, HALF))
+        things, of = tracker._things_around(image, pixels, points, 0.0)
+        knife = np.array([thing.id for thing in things])[of] == "t2"
+        assert knife[shown].mean() > 0.95 and knife[~shown].mean() < 0.05
+
+
+def test_thing_that_is_not_found_moves_with_what_it_lies_on() -> None:
+    with Tracker(HALF) as tracker:
+        tracker.update(moved_mug()[0][0].cloud, 0.0)
+        plate, mug = tracker._things
+        mug.pose = mug.pose.copy()
+        mug.pose[:3, 3] = plate.pose[:3, 3] + (0.02, 0.01, 0.05)
+        mug._rest = mug.pose
+        tracker._start(plate)
+        assert mug.carrier is plate
+        tracker._start(mug)
+        mug.lost()
+        plate.pose = plate.pose.copy()
+        plate.pose[:3, 3] += 0.1, 0.2, 0.05
+        tracker._carry(mug)
+        assert mug.pose[:3, 3] - plate.pose[:3, 3] == pytest.approx([0.02, 0.01, 0.05])

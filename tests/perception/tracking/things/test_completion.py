@@ -80,19 +80,24 @@ def flat(thing: Pipeline, on: Table, now: Table | None = None, views: int = 0) -
     return FlatThing(thing, on.reference, view(), 1.0, 0.0015, 40.0, image, changed, views)
 
 
-def half_hidden_knife(end: tuple[int, int, int], row: int = 29) -> tuple[Table, Pipeline]:
+def half_hidden_knife(end: tuple[int, int, int], row: int = 29, hidden: int = 20) -> tuple[Table, Pipeline]:
     """Return a knife whose middle a high thing hides, and whose other end has a colour and begins in a row."""
-    on = table()
+    on, last = table(), 50 + hidden
     lay(on, np.s_[29:32, 20:50], STEEL, 1)
-    lay(on, np.s_[15:45, 50:75], BLUE, 2, 0.15)
-    lay(on, np.s_[row : row + 3, 75:80], end, TABLE)
+    lay(on, np.s_[15:45, 50:last], BLUE, 2, 0.15)
+    lay(on, np.s_[row : row + 3, last : last + 5], end, TABLE)
     return on, thing_at(np.s_[29:32, 20:50], 1)
 
 
 def test_long_thing_goes_on_behind_what_stands_before_it() -> None:
     on, knife = half_hidden_knife(STEEL)
     columns = flat(knife, on).missing_part() % SHAPE[1]
-    assert set(columns.tolist()) == {75, 76, 77, 78, 79}
+    assert set(columns.tolist()) == {70, 71, 72, 73, 74}
+
+
+def test_thing_does_not_go_on_beyond_its_largest_length() -> None:
+    on, knife = half_hidden_knife(STEEL, hidden=30)
+    assert not len(flat(knife, on).missing_part()), "both ends together are 32 cm apart"
 
 
 @pytest.mark.parametrize(("end", "row"), [(BLUE, 29), (STEEL, 40), (WOOD, 29)])

@@ -86,3 +86,27 @@ def test_merged_thing_keeps_the_name_it_was_longest_known_by() -> None:
         whole.take_name([part], 5.0)
         assert {whole.id, part.id} == {"t1", "t2"} and whole.id == name
         assert whole.at == (at if name == "t2" else 0.0)
+
+
+def test_thing_rides_on_what_carries_it() -> None:
+    plate = flat_thing()
+    points = (plate.cloud.points * np.array([0.8, 0.2, 1.0])).astype(np.float32)
+    pose = plate.pose.copy()
+    pose[:3, 3] += 0.01, 0.02, 0.03
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.08, 0.02, 0.01))
+    knife = Pipeline("t2", 2, PointCloud(points), np.array([0.04, 0.01, 0.005]), box, pose, 0.0, TrackingSettings())
+    assert knife.lies_on(plate) and not plate.lies_on(knife), "only the smaller thing lies on the other one"
+    assert not knife.is_carried_off(0.01), "nothing carries it yet"
+    knife.load_onto(plate)
+    assert knife.carrier is plate and not knife.is_carried_off(0.01)
+    plate.pose = np.array([[0.0, -1, 0, 0.1], [1, 0, 0, 0.1], [0, 0, 1, 0.2], [0, 0, 0, 1]])
+    assert knife.is_carried_off(0.01)
+    knife.ride()
+    assert knife.pose[:3, 3] == pytest.approx([0.1 - 0.02, 0.1 + 0.01, 0.23])
+    assert knife.pose[:3, :3] == pytest.approx(plate.pose[:3, :3])
+    plate.lost()
+    assert not knife.is_carried_off(0.01), "it is not known where the plate is"
+    knife.pose = knife.pose.copy()
+    knife.pose[0, 3] += 0.2
+    plate.pose = np.eye(4)
+    assert not knife.lies_on(plate), "it is beside the plate"

@@ -1,0 +1,143 @@
+"""Estimate how long a long thing is of which something hides an end.
+
+The end lies behind what hides it: if the thing were longer, it would come into view on the other side. Between these
+bounds, the usual lengths of cutlery say which length is likely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.scene import turned_axes
+from deixis.perception.tracking.frames.image import TableView
+from deixis.perception.tracking.table.reference import Reference
+from deixis.perception.tracking.things.completion import FLAT, MIN_BEFORE, MIN_SLENDERNESS
+from deixis.perception.tracking.things.pipeline import Pipeline
+
+STEP = 0.003
+"""Distance in metres of the places beyond an end at which it is looked for what is seen there."""
+
+MAX_GAP = 0.005
+"""Distance in metres from an end, or from the last pixel that shows the thing, within which what hides it begins. Where
+the table is seen between the two, the end is seen."""
+
+MAX_BEYOND = 0.3
+"""Largest distance in metres beyond an end at which a thing is looked for."""
+
+NEAREST = np.float32(1e-6)
+"""Depth in metres of a surface that is before all places."""
+
+TOO_WIDE = 0.006
+"""Width in metres by which a thing may seem wider than its kind is, for noise."""
+
+RIGHT = 0.014
+"""Error in metres up to which a length is right. The middle is then right to 7 mm, which leaves 3 mm of a centimetre
+for the errors of the end that is seen."""
+
+LENGTHS = np.arange(0.0, 0.4, 0.001)
+"""Lengths in metres for which the prior probability is known."""
+
+
+def hidden_lengths(
+    thing: Pipeline, others: Iterable[Pipeline], reference: Reference, view: TableView
+) -> tuple[float, float]:
+    """Return how far a thing at rest may go on behind others at the two ends of its box.
+
+    Parameters
+    ----------
+    thing
+        The thing.
+    others
+        The other things at rest, into which it cannot go on.
+    reference
+        The table at rest.
+    view
+        View of the table in which the reference is.
+
+    Returns
+    -------
+    tuple
+        Lengths in metres beyond the end against the long axis of the box and beyond the one along it; 0 where the
+        table is seen beyond the end, and for a thing that is not long and flat.
+    """
+    length, width, height = thing.oriented.extents
+    if length < MIN_SLENDERNESS * width or height > FLAT:
+        return 0.0, 0.0
+    axes = turned_axes(thing.oriented.yaw) @ thing.pose[:3, :3].T
+    middle = thing.placed_corners.mean(axis=0)
+    others = list(others)
+    own = (reference.owner == thing.slot) | (reference.depth <= 0)  # it goes on where it is seen, or nothing is known
+    unless_own = np.where(own, NEAREST, reference.depth)
+    steps = np.arange(STEP, MAX_BEYOND, STEP)
+    found = []
+    for sign in (-1, 1):
+        places = middle + sign * (length / 2 + steps[:, None]) * axes[0]
+        hidden = view.hides(places, reference.depth, MIN_BEFORE)
+        goes_on = view.hides(places, unless_own, MIN_BEFORE)
+        seen = float(steps[int((hidden | ~goes_on).argmax())]) - STEP
+        near = steps < seen + MAX_GAP
+        if not hidden[near].any():
+            found.append(0.0)
+            continue
+        free = (~goes_on & ~near) | np.any([other.contains(places, 0.0) for other in others], axis=0)
+        found.append(float(steps[int(free.argmax())] - STEP) if free.any() else MAX_BEYOND)
+    return found[0], found[1]
+
+
+def likely_length(seen: float, width: float, most: float) -> tuple[float, float]:
+    """Return the likeliest length of a piece of cutlery of which a part is seen, and its standard deviation.
+
+    Parameters
+    ----------
+    seen, width
+        Length and width in metres of what is seen.
+    most
+        Greatest possible length in metres.
+
+    Returns
+    -------
+    tuple
+        Length that is right to ``RIGHT`` with the largest probability, and the standard deviation, in metres; the seen
+        length, and 0, if no piece of cutlery has a possible length.
+
+    Examples
+    --------
+    >>> length, spread = likely_length(0.1, 0.02, 0.4)
+    >>> 0.15 < length < 0.2, 0.02 < spread < 0.04
+    (True, True)
+    >>> likely_length(0.39, 0.02, 0.4)
+    (0.39, 0.0)
+    """
+    weights = sum((prior for widest, prior in _priors() if width <= widest + TOO_WIDE), np.zeros(len(LENGTHS)))
+    possible = np.flatnonzero((seen <= LENGTHS) & (most >= LENGTHS))
+    weights = np.where(np.isin(np.arange(len(LENGTHS)), possible), weights, 0.0)
+    total = float(weights.sum())
+    if total <= 0:
+        return seen, 0.0
+    within = np.convolve(weights, np.ones(2 * round(RIGHT / LENGTHS[1]) + 1), "same")
+    length = float(LENGTHS[possible[within[possible].argmax()]])
+    return length, float(np.sqrt((LENGTHS - length) ** 2 @ weights / total))
+
+
+@cache
+def _priors() -> tuple[tuple[float, NDArray[np.float64]], ...]:
+    """Return the greatest width of each most special kind of cutlery, and its probability at ``LENGTHS``."""
+    ontology = default_ontology()
+    cutlery = ontology.kinds.of_word("cutlery")
+    assert cutlery is not None, "the TBox has cutlery"
+    kinds = [kind for kind in ontology.kinds if cutlery.iri in kind.broader and ontology.kinds.in_tbox(kind.iri)]
+    broader = {iri for kind in kinds for iri in kind.broader if iri != kind.iri}
+    found = []
+    for kind in kinds:
+        size = ontology.sizes.of(kind.iri)
+        if kind.iri in broader or size.stated_of != kind.iri:
+            continue
+        low, usual, high = size.length.least, size.length.typical, size.length.greatest
+        prior = np.interp(LENGTHS, [low, usual, high], [0.0, 1.0, 0.0], left=0.0, right=0.0)
+        found.append((size.width.greatest, prior / max(float(prior.sum()), 1e-9)))
+    return tuple(found)
