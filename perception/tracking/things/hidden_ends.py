@@ -46,14 +46,14 @@ LENGTHS = np.arange(0.0, 0.4, 0.001)
 def hidden_lengths(
     thing: Pipeline, others: Iterable[Pipeline], reference: Reference, view: TableView
 ) -> tuple[float, float]:
-    """Return how far a thing at rest may go on behind others at the two ends of its box.
+    """Return how far a thing at rest may continue behind others at the two ends of its box.
 
     Parameters
     ----------
     thing
         The thing.
     others
-        The other things at rest, into which it cannot go on.
+        The other things at rest, into which it cannot continue.
     reference
         The table at rest.
     view
@@ -71,7 +71,7 @@ def hidden_lengths(
     axes = turned_axes(thing.oriented.yaw) @ thing.pose[:3, :3].T
     middle = thing.placed_corners.mean(axis=0)
     others = list(others)
-    own = (reference.owner == thing.slot) | (reference.depth <= 0)  # it goes on where it is seen, or nothing is known
+    own = (reference.owner == thing.slot) | (reference.depth <= 0)  # it continues where it is seen, or nothing is known
     unless_own = np.where(own, NEAREST, reference.depth)
     steps = np.arange(STEP, MAX_BEYOND, STEP)
     found = []

@@ -71,7 +71,7 @@ NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""
 
 MIN_ON = 0.7
-"""Minimum share of the points of a thing inside the box of another one, seen from above, at which it lies on that one."""
+"""Minimum share of the points of a thing inside the box of another one, from above, at which it lies on that one."""
 
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops by half."""
