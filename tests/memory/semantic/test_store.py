@@ -189,9 +189,9 @@ def test_a_bulk_commit_while_an_iterator_reads_changes_nothing(
 ) -> None:
     learn(memory, "dinner-1")
     reading = iter(memory.store.quads_for_pattern(None, None, None, None))
-    with pytest.raises(MemoryBusyError, match="let go of what iterates over it"):
+    with pytest.raises(MemoryBusyError, match="release the iterators over it"):
         learn_in_bulk(memory, make_lesson)
-    with pytest.raises(MemoryBusyError, match="let go of what iterates over it"):
+    with pytest.raises(MemoryBusyError, match="release the iterators over it"):
         memory.lessons()
     del reading
     assert memory.lessons() == ("dinner-1",)
