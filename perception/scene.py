@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Relations
@@ -357,6 +358,7 @@ class Scene(Answer):
             raise SceneError(f"{self.file}: some boxes have heights and others do not; give all of them 2 or 3 axes")
 
     @classmethod
+    @checks_arguments
     def from_boxes(
         cls,
         min: ArrayLike | None = None,
@@ -434,6 +436,7 @@ class Scene(Answer):
         return cls(tuple(things), frame=frame, viewpoint=viewpoint, unit=unit)
 
     @classmethod
+    @checks_arguments
     def from_open3d(
         cls,
         boxes: Iterable[Any],
@@ -485,6 +488,7 @@ class Scene(Answer):
         return replace(scene, objects=tuple(things))
 
     @classmethod
+    @checks_arguments
     def from_coco(cls, source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
         """Return the scene of one image in COCO instance annotations.
 
@@ -517,6 +521,7 @@ class Scene(Answer):
         read: Callable[..., Scene] = _format("scene_json").read_scene
         return read(source, image)
 
+    @checks_arguments
     def to_coco(self, size: tuple[int, int] | None = None, file_name: str | None = None) -> dict[str, Any]:
         """Return the scene as COCO instance annotations of one image.
 
@@ -549,6 +554,7 @@ class Scene(Answer):
         return write(self, size, file_name)
 
     @classmethod
+    @checks_arguments
     def from_detections3d(cls, message: Any, *, viewpoint: str = "chair") -> Scene:
         """Return the scene of a ``vision_msgs/Detection3DArray``.
 
@@ -722,6 +728,7 @@ class Scene(Answer):
         }
         return replace(self.turned(angle), viewer=None, **people)  # type: ignore[arg-type]
 
+    @checks_arguments
     def turned(self, angle: float, mirrored: bool = False) -> Scene:
         """Return the scene with its boxes and fronts turned about the origin.
 
@@ -765,8 +772,12 @@ class Scene(Answer):
         return replace(self, objects=tuple(things))
 
     def __getitem__(self, name: str) -> PerceivedObject:
-        return next(thing for thing in self.objects if thing.id == name)
+        found = next((thing for thing in self.objects if thing.id == name), None)
+        if found is None:
+            raise SceneError(f"{self.file}: there is no object {name!r}; there are: {', '.join(self.ids) or 'none'}")
+        return found
 
+    @checks_arguments
     def cloud_of(self, id: str) -> PointCloud:
         """Return the points of an object in the frame of the scene; a file is read again on each call.
 
@@ -791,8 +802,6 @@ class Scene(Answer):
         >>> len(Scene((cup,)).cloud_of("o1"))
         3
         """
-        if id not in self.ids:
-            raise SceneError(f"{self.file}: there is no object '{id}'; there are: {', '.join(self.ids) or 'none'}")
         cloud = self[id].cloud
         if isinstance(cloud, PointCloud):
             return cloud
@@ -839,6 +848,7 @@ class Scene(Answer):
             shapes.append(box)
         return shapes
 
+    @checks_arguments
     def relations(
         self, vocabulary: Relations, tolerance: float = 0.0, deadline: Deadline = Deadline.never()
     ) -> SceneRelations:
@@ -883,6 +893,7 @@ class Scene(Answer):
             self._relations[key] = replace(known, poses=self.poses)
         return self._relations[key]
 
+    @checks_arguments
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
         """Return the relations of all pairs as a complete relation graph, for export.
 
@@ -924,6 +935,7 @@ class Scene(Answer):
         bare = (replace(thing, label=None, confidence=1.0, candidates=()) for thing in self.objects)
         return replace(self, objects=tuple(bare))
 
+    @checks_arguments
     def reordered(self, order: Sequence[int]) -> Scene:
         """Return the scene with its objects in another order, and without the detection.
 

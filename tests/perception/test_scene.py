@@ -19,6 +19,13 @@ FORK = PerceivedObject("fork", (0.0, 0.0), (0.02, 0.2), label="fork", confidence
 PLATE = PerceivedObject("plate", (0.05, -0.02), (0.32, 0.25), label="plate")
 
 
+def test_an_unknown_id_is_reported_with_the_known_ones() -> None:
+    scene = Scene((PerceivedObject("o1", (0.0, 0.0), (2.0, 1.0)),))
+    for lookup in (scene.__getitem__, scene.cloud_of):
+        with pytest.raises(SceneError, match="there is no object 'o9'; there are: o1"):
+            lookup("o9")
+
+
 def test_the_boxes_are_one_array() -> None:
     boxes = Scene((FORK, PLATE)).boxes
     assert boxes.shape == (2, 2, 2)
