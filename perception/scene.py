@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from deixis.answers import Answer, count
-from deixis.arguments import checks_arguments
+from deixis.arguments import checks_arguments, require_fields
 from deixis.deadline import Deadline
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Relations
@@ -343,12 +343,24 @@ class Scene(Answer):
     )
 
     def __post_init__(self) -> None:
+        require_fields(self, unless=("objects", "_relations"))
+        if not isinstance(self.objects, tuple | list) or not all(
+            isinstance(one, PerceivedObject) for one in self.objects
+        ):
+            require_fields(self)
         seen: set[str] = set()
         for thing in self.objects:
             if thing.id in seen:
                 raise SceneError(f"{self.file}: the id '{thing.id}' is used twice; give each object its own id")
             seen.add(thing.id)
-            _require_box(thing, self.file)
+            try:
+                _require_box(thing, self.file)
+            except (TypeError, ValueError, AttributeError, OverflowError) as error:
+                if not isinstance(error, SceneError):  # find out which field has another type
+                    require_fields(thing)
+                    if thing.oriented is not None:
+                        require_fields(thing.oriented)
+                raise
         if self.viewer is not None and self.objects and not any(self._sight):
             raise SceneError(
                 f"{self.file}: 'viewpoint': the viewer must stand beside the middle of the scene, got"
@@ -752,6 +764,8 @@ class Scene(Answer):
         """
         from deixis.reasoning.geometry.turning import turned
 
+        if not math.isfinite(angle):
+            raise SceneError(f"`angle` must be a finite number of radians, got {angle}")
         boxes = turned(self.boxes, angle, mirrored)
         cosine, sine = math.cos(angle), math.sin(angle)
 
@@ -955,7 +969,11 @@ class Scene(Answer):
         >>> scene.reordered([1, 0]).ids
         ('o2', 'o1')
         """
-        return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
+        try:
+            objects = tuple(self.objects[i] for i in order)
+        except IndexError as error:
+            raise SceneError(f"`order` must have positions of the {len(self.objects)} objects, got {order}") from error
+        return replace(self, objects=objects, detection=None)
 
 
 def _format(name: str) -> Any:
@@ -987,7 +1005,7 @@ def _corners(
         return middle - sides / 2, middle + sides / 2, []
     try:
         angles = np.broadcast_to(np.asarray(yaw, dtype=np.float64), len(middle))
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise SceneError(f"`yaw` must be one angle, or one for each of the {len(middle)} boxes, in radians") from error
     cosine, sine = np.abs(np.cos(angles)), np.abs(np.sin(angles))
     half = sides / 2
@@ -1002,7 +1020,7 @@ def _corners(
 def _rows(values: ArrayLike, what: str) -> NDArray[np.float64]:
     try:
         rows = np.array(values, dtype=np.float64)
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise SceneError(f"`{what}` must be an array of numbers of shape (n, 2) or (n, 3)") from error
     if rows.size == 0:
         return rows.reshape(0, 2)

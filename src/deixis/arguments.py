@@ -17,7 +17,7 @@ Result = TypeVar("Result")
 FUNCTIONS = frozenset({"Callable", "Answerer", "LeftOut", "Progress", "Recording"})
 """Names in annotations that mean a function."""
 
-UNCHECKED = frozenset({"Any", "ArrayLike", "Ask", "NDArray", "object"})
+UNCHECKED = frozenset({"Any", "ArrayLike", "Ask", "NDArray", "Rgb", "object"})
 """Names in annotations for which any value passes, because the function checks it itself."""
 
 PROTOCOLS = {"Board": "now", "Knowledge": "recollection", "Part": "prepare", "TextIO": "write"}
@@ -73,13 +73,15 @@ def checks_arguments(function: Callable[Given, Result]) -> Callable[Given, Resul
     return checked
 
 
-def require_fields(record: object) -> None:
+def require_fields(record: object, unless: Collection[str] = ()) -> None:
     """Raise ArgumentError unless each field of a dataclass has the type of its annotation.
 
     Parameters
     ----------
     record
         The object, of a class in a module with ``from __future__ import annotations``.
+    unless
+        Names of fields that are not checked.
 
     Raises
     ------
@@ -87,7 +89,8 @@ def require_fields(record: object) -> None:
         If a field has another type; the message names the field.
     """
     for name, annotation in type(record).__annotations__.items():
-        typed(name, getattr(record, name), annotation)
+        if name not in unless:
+            typed(name, getattr(record, name), annotation)
 
 
 def typed(name: str, value: Any, annotation: str) -> Any:
@@ -175,6 +178,8 @@ def _is(value: object, name: str, inner: str) -> bool:
             return False
         kinds = map(_alternatives, entries if _is_fixed(name, inner) else entries * len(value))
         return all(any(_is(one, *kind) for kind in of) for one, of in zip(value, kinds, strict=True))
+    if name == "Iterable" and inner and isinstance(value, Collection) and not isinstance(value, str | bytes | Mapping):
+        return all(any(_is(one, *kind) for kind in _alternatives(inner)) for one in value)
     if name in PROTOCOLS:
         return hasattr(value, PROTOCOLS[name])
     known = _KNOWN.get(name)

@@ -21,6 +21,7 @@ from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.features.orientation import with_headings
 from deixis.perception.formats.scene_json import scene_text
 from deixis.perception.scene import Scene
+from deixis.text_files import is_folder, is_present
 
 READING = "reading the cloud"
 
@@ -129,9 +130,9 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
     ('o1',)
     """
     file = Path(file)
-    if not file.name or file.is_dir():
+    if not file.name or is_folder(file):
         raise DeixisError(f"{file}: this is a folder; name a file")
-    if file.exists() and not file.is_file():
+    if is_present(file) and not file.is_file():
         raise DeixisError(f"{file}: this is a device or a pipe, which the scene would replace; name a file")
     folder, base = clouds_folder(file), Path(scene.file).parent
     perceived = scene.detection is not None or any(isinstance(thing.cloud, PointCloud) for thing in scene.objects)
