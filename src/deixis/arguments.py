@@ -20,8 +20,8 @@ FUNCTIONS = frozenset({"Callable", "Answerer", "LeftOut", "Progress", "Recording
 UNCHECKED = frozenset({"Any", "ArrayLike", "Ask", "NDArray", "Rgb", "object"})
 """Names in annotations for which any value passes, because the function checks it itself."""
 
-PROTOCOLS = {"Board": "now", "Knowledge": "recollection", "Part": "prepare", "TextIO": "write"}
-"""Names in annotations that mean an object with certain methods, each with one of the methods."""
+PROTOCOLS = {"Board": "now", "Detected": "cloud", "Knowledge": "recollection", "Part": "prepare", "TextIO": "write"}
+"""Names in annotations that mean an object with certain methods or properties, each with one of them."""
 
 MANY = frozenset({"Collection", "Sequence", "list", "tuple"})
 """Names in annotations that mean a collection whose entries can be read more than once."""

@@ -104,6 +104,10 @@ def test_fields_of_a_record_are_checked() -> None:
         Selection(lesson=3)  # type: ignore[arg-type]
 
 
+def _is_protocol(kind: type) -> bool:
+    return bool(getattr(kind, "_is_protocol", False))
+
+
 def _public() -> Iterator[tuple[str, Callable[..., Any]]]:
     """Yield the public functions, and the methods of the classes that users call."""
     for name in deixis.__all__:
@@ -113,6 +117,18 @@ def _public() -> Iterator[tuple[str, Callable[..., Any]]]:
         for name, method in inspect.getmembers(kind, inspect.isfunction):
             if not name.startswith("_") and len(inspect.signature(method).parameters) > 1:
                 yield f"{kind.__name__}.{name}", method
+
+
+@pytest.mark.parametrize("kind", [Scene, deixis.PerceivedObject, deixis.OrientedBox, Selection])
+def test_each_field_of_a_checked_record_has_a_known_type(kind: type) -> None:
+    module = importlib.import_module(kind.__module__)
+    for name, annotation in kind.__annotations__.items():
+        words = set(re.findall(r"[A-Za-z]\w*", annotation)) - set(arguments.UNCHECKED) - set(arguments.PROTOCOLS)
+        for word in words - set(arguments._KNOWN) - set(arguments.MANY):
+            assert inspect.isclass(getattr(module, word, dict)) and not _is_protocol(getattr(module, word, dict)), (
+                name,
+                word,
+            )
 
 
 @pytest.mark.parametrize(("name", "function"), list(_public()))
@@ -141,4 +157,4 @@ def test_each_name_in_a_checked_annotation_is_a_class(name: str, function: Calla
         used = {node.id for node in ast.walk(ast.parse(shown)) if isinstance(node, ast.Name)}
         for word in used - known if parameter != "return" else ():
             found = getattr(module, word, None) or getattr(importlib.import_module(imported[word]), word)
-            assert inspect.isclass(found) and not getattr(found, "_is_protocol", False), (name, parameter, word)
+            assert inspect.isclass(found) and not _is_protocol(found), (name, parameter, word)
