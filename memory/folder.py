@@ -67,7 +67,11 @@ def inspect(folder: Path) -> FolderState:
     MemoryFormatError
         If it is something else, or a damaged memory.
     """
-    if not folder.exists():
+    try:
+        present = folder.exists()
+    except OSError as error:  # such as a name that is too long
+        raise MemoryFormatError(f"{folder} cannot be a folder: {error.strerror}; name another path") from error
+    if not present:
         if folder.is_symlink():
             raise MemoryFormatError(f"{folder} is a broken link; remove or repair it")
         nearest = next(parent for parent in folder.absolute().parents if parent.exists())

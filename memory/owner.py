@@ -25,7 +25,7 @@ import weakref
 from abc import ABC, abstractmethod
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import ClassVar, Self
+from typing import ClassVar, NoReturn, Self
 
 from deixis.memory.errors import MemoryBusyError, MemoryWriteError, ReadOnlyMemoryError
 
@@ -38,6 +38,10 @@ class Closing(ABC):
 
     def __exit__(self, *raised: object) -> None:
         self.close()
+
+    def __reduce__(self) -> NoReturn:
+        name = type(self).__name__
+        raise TypeError(f"a {name} cannot be copied or pickled, because it may hold open files; make another {name}")
 
     @abstractmethod
     def close(self) -> None:

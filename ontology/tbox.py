@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from deixis.errors import OntologyError
 from deixis.ontology.rdf.triple_index import TripleIndex
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from deixis.ontology.lexicon.lexicon import Lexicon
     from deixis.ontology.lexicon.nouns import Nouns
 
+Read = TypeVar("Read")
+
 TBOX_FILES = tuple(Path(__file__).with_name(name) for name in ("deixis.ttl", "everyday.ttl"))
 """Turtle files of one ontology: the vocabulary with the kinds of tableware, and the everyday kinds around them."""
 
@@ -36,6 +38,9 @@ class Ontology:
     hedges: dict[str, float]
     sizes: Sizes
     colours: Colours
+
+    def __reduce__(self) -> str | tuple[Any, ...]:
+        return (default_ontology, ()) if self is default_ontology() else super().__reduce__()
 
     def __repr__(self) -> str:
         return f"<Ontology {len(self.relations)} relations, {len(self.kinds)} kinds>"
@@ -160,18 +165,7 @@ def load_ontology(*extra: str) -> Ontology:
     )
     kinds = _kinds(triples)
 
-    @lru_cache(maxsize=1)
-    def nouns() -> Nouns:
-        from deixis.ontology.lexicon.nouns import read_nouns
-
-        return read_nouns(kinds.words)
-
-    @lru_cache(maxsize=1)
-    def listed() -> frozenset[str]:
-        from deixis.ontology.lexicon.nouns import listed_words
-
-        return listed_words(kinds.words)
-
+    nouns, listed = _ReadOnce(_nouns, kinds.words), _ReadOnce(_listed_words, kinds.words)
     return Ontology(
         Relations(tuple(relations)),
         Kinds(tuple(kinds), nouns, listed),
@@ -179,6 +173,33 @@ def load_ontology(*extra: str) -> Ontology:
         sizes_from_triples(triples, nouns),
         colours,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _ReadOnce(Generic[Read]):
+    """Function without arguments that reads something about words at its first call; it can be pickled."""
+
+    read: Callable[[Mapping[str, Kind]], Read]
+    words: Mapping[str, Kind]
+
+    def __call__(self) -> Read:
+        return self._found
+
+    @cached_property
+    def _found(self) -> Read:
+        return self.read(self.words)
+
+
+def _nouns(words: Mapping[str, Kind]) -> Nouns:
+    from deixis.ontology.lexicon.nouns import read_nouns
+
+    return read_nouns(words)
+
+
+def _listed_words(words: Mapping[str, Kind]) -> frozenset[str]:
+    from deixis.ontology.lexicon.nouns import listed_words
+
+    return listed_words(words)
 
 
 def tbox_turtle() -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments, require_fields
 from deixis.deadline import Deadline
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Relations
@@ -342,12 +343,24 @@ class Scene(Answer):
     )
 
     def __post_init__(self) -> None:
+        require_fields(self, unless=("objects", "_relations"))
+        if not isinstance(self.objects, tuple | list) or not all(
+            isinstance(one, PerceivedObject) for one in self.objects
+        ):
+            require_fields(self)
         seen: set[str] = set()
         for thing in self.objects:
             if thing.id in seen:
                 raise SceneError(f"{self.file}: the id '{thing.id}' is used twice; give each object its own id")
             seen.add(thing.id)
-            _require_box(thing, self.file)
+            try:
+                _require_box(thing, self.file)
+            except (TypeError, ValueError, AttributeError, OverflowError) as error:
+                if not isinstance(error, SceneError):  # find out which field has another type
+                    require_fields(thing)
+                    if thing.oriented is not None:
+                        require_fields(thing.oriented)
+                raise
         if self.viewer is not None and self.objects and not any(self._sight):
             raise SceneError(
                 f"{self.file}: 'viewpoint': the viewer must stand beside the middle of the scene, got"
@@ -357,6 +370,7 @@ class Scene(Answer):
             raise SceneError(f"{self.file}: some boxes have heights and others do not; give all of them 2 or 3 axes")
 
     @classmethod
+    @checks_arguments
     def from_boxes(
         cls,
         min: ArrayLike | None = None,
@@ -434,6 +448,7 @@ class Scene(Answer):
         return cls(tuple(things), frame=frame, viewpoint=viewpoint, unit=unit)
 
     @classmethod
+    @checks_arguments
     def from_open3d(
         cls,
         boxes: Iterable[Any],
@@ -485,6 +500,7 @@ class Scene(Answer):
         return replace(scene, objects=tuple(things))
 
     @classmethod
+    @checks_arguments
     def from_coco(cls, source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
         """Return the scene of one image in COCO instance annotations.
 
@@ -517,6 +533,7 @@ class Scene(Answer):
         read: Callable[..., Scene] = _format("scene_json").read_scene
         return read(source, image)
 
+    @checks_arguments
     def to_coco(self, size: tuple[int, int] | None = None, file_name: str | None = None) -> dict[str, Any]:
         """Return the scene as COCO instance annotations of one image.
 
@@ -549,6 +566,7 @@ class Scene(Answer):
         return write(self, size, file_name)
 
     @classmethod
+    @checks_arguments
     def from_detections3d(cls, message: Any, *, viewpoint: str = "chair") -> Scene:
         """Return the scene of a ``vision_msgs/Detection3DArray``.
 
@@ -722,6 +740,7 @@ class Scene(Answer):
         }
         return replace(self.turned(angle), viewer=None, **people)  # type: ignore[arg-type]
 
+    @checks_arguments
     def turned(self, angle: float, mirrored: bool = False) -> Scene:
         """Return the scene with its boxes and fronts turned about the origin.
 
@@ -745,6 +764,8 @@ class Scene(Answer):
         """
         from deixis.reasoning.geometry.turning import turned
 
+        if not math.isfinite(angle):
+            raise SceneError(f"`angle` must be a finite number of radians, got {angle}")
         boxes = turned(self.boxes, angle, mirrored)
         cosine, sine = math.cos(angle), math.sin(angle)
 
@@ -765,8 +786,12 @@ class Scene(Answer):
         return replace(self, objects=tuple(things))
 
     def __getitem__(self, name: str) -> PerceivedObject:
-        return next(thing for thing in self.objects if thing.id == name)
+        found = next((thing for thing in self.objects if thing.id == name), None)
+        if found is None:
+            raise SceneError(f"{self.file}: there is no object {name!r}; there are: {', '.join(self.ids) or 'none'}")
+        return found
 
+    @checks_arguments
     def cloud_of(self, id: str) -> PointCloud:
         """Return the points of an object in the frame of the scene; a file is read again on each call.
 
@@ -791,8 +816,6 @@ class Scene(Answer):
         >>> len(Scene((cup,)).cloud_of("o1"))
         3
         """
-        if id not in self.ids:
-            raise SceneError(f"{self.file}: there is no object '{id}'; there are: {', '.join(self.ids) or 'none'}")
         cloud = self[id].cloud
         if isinstance(cloud, PointCloud):
             return cloud
@@ -839,6 +862,7 @@ class Scene(Answer):
             shapes.append(box)
         return shapes
 
+    @checks_arguments
     def relations(
         self, vocabulary: Relations, tolerance: float = 0.0, deadline: Deadline = Deadline.never()
     ) -> SceneRelations:
@@ -883,6 +907,7 @@ class Scene(Answer):
             self._relations[key] = replace(known, poses=self.poses)
         return self._relations[key]
 
+    @checks_arguments
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
         """Return the relations of all pairs as a complete relation graph, for export.
 
@@ -924,6 +949,7 @@ class Scene(Answer):
         bare = (replace(thing, label=None, confidence=1.0, candidates=()) for thing in self.objects)
         return replace(self, objects=tuple(bare))
 
+    @checks_arguments
     def reordered(self, order: Sequence[int]) -> Scene:
         """Return the scene with its objects in another order, and without the detection.
 
@@ -943,7 +969,11 @@ class Scene(Answer):
         >>> scene.reordered([1, 0]).ids
         ('o2', 'o1')
         """
-        return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
+        try:
+            objects = tuple(self.objects[i] for i in order)
+        except IndexError as error:
+            raise SceneError(f"`order` must have positions of the {len(self.objects)} objects, got {order}") from error
+        return replace(self, objects=objects, detection=None)
 
 
 def _format(name: str) -> Any:
@@ -975,7 +1005,7 @@ def _corners(
         return middle - sides / 2, middle + sides / 2, []
     try:
         angles = np.broadcast_to(np.asarray(yaw, dtype=np.float64), len(middle))
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise SceneError(f"`yaw` must be one angle, or one for each of the {len(middle)} boxes, in radians") from error
     cosine, sine = np.abs(np.cos(angles)), np.abs(np.sin(angles))
     half = sides / 2
@@ -990,7 +1020,7 @@ def _corners(
 def _rows(values: ArrayLike, what: str) -> NDArray[np.float64]:
     try:
         rows = np.array(values, dtype=np.float64)
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise SceneError(f"`{what}` must be an array of numbers of shape (n, 2) or (n, 3)") from error
     if rows.size == 0:
         return rows.reshape(0, 2)

@@ -29,6 +29,7 @@ from deixis.reasoning.temporal.fluent import (
     Statement,
     TemporalRelation,
 )
+from deixis.text_files import is_folder
 
 UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
 """Lengths of the accepted units, in seconds."""
@@ -71,7 +72,7 @@ def read_fluents(path: str | Path) -> FluentFile:
     ScriptFileError
         If the file cannot be read.
     """
-    if Path(path).is_dir():
+    if is_folder(path):
         raise FluentFileError(f"{path}: this is a folder, not a file of fluents")
     return parse_fluents(read_text(Path(path), str(path)), str(path))
 

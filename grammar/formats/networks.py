@@ -24,6 +24,7 @@ from deixis.ontology.graph.facts import Source
 from deixis.reasoning.errors import NetworkError, UnknownAtomError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, bits
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
+from deixis.text_files import is_folder
 
 MAX_INDEX_DIGITS = 15  # maximum number of digits of an index
 HEADER = re.compile(r"\s*(\d+)\s*(?:#\s*(.*?)|(\S.*?)?)\s*$")
@@ -79,7 +80,7 @@ def read_networks(path: str | Path, calculi: Sequence[Calculus]) -> tuple[Networ
     ScriptFileError
         If the file cannot be read.
     """
-    if Path(path).is_dir():
+    if is_folder(path):
         raise ScriptFileError(f"{path}: this is a folder, not a network file")
     return parse_networks(read_text(Path(path), str(path)), calculi, str(path))
 

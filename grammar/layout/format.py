@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from deixis.arguments import checks_arguments
 from deixis.grammar.layout.claims import PROPERTIES, Phrase, adjective_property, phrase_of
 from deixis.grammar.script import (
     Chain,
@@ -27,6 +28,7 @@ from deixis.ontology.things.colours import Colour
 from deixis.ontology.things.kinds import Kind
 
 
+@checks_arguments
 def format_script(script: Script) -> str:
     """Return the script's own statements in canonical form, without those of included files.
 

@@ -50,6 +50,7 @@ from deixis.memory.owner import Closing, ThreadLock
 from deixis.memory.perceptual.database.handle import wrap_level_errors
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
+from deixis.text_files import is_folder
 
 FLUENT, LOG, SUBJECT, PREDICATE, COUNTER, HEAD = b"f", b"l", b"s", b"p", b"n", b"#"
 """First bytes of the keys: fluents by id, log by sequence number, ids by subject and by predicate, counters, head."""
@@ -1121,7 +1122,7 @@ def has_episodes(memory: Path) -> bool:
     bool
         True if it has.
     """
-    return (memory / EPISODES / STORE).is_dir()
+    return is_folder(memory / EPISODES / STORE)
 
 
 @contextmanager

@@ -37,12 +37,29 @@ def learned_iri(*parts: str | int) -> str:
     >>> learned_iri("category", "fish knife>")
     'https://w3id.org/deixis/learned/category/fish%20knife%3E'
     """
-    return LEARNED + "/".join(map(_encoded, map(str, parts)))
+    return LEARNED + "/".join(map(iri_part, map(str, parts)))
 
 
 @lru_cache(maxsize=4096)
-def _encoded(part: str) -> str:
-    return quote(part, safe="")
+def iri_part(name: str) -> str:
+    """Return a name as one part of the path of an IRI.
+
+    Parameters
+    ----------
+    name
+        The name, which may have lone surrogates.
+
+    Returns
+    -------
+    str
+        The name, with all characters except letters, digits and ``_.-~`` percent-encoded.
+
+    Examples
+    --------
+    >>> iri_part("fish knife>")
+    'fish%20knife%3E'
+    """
+    return quote(name, safe="", errors="surrogatepass")
 
 
 def category_iri(name: str) -> str:

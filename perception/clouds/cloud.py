@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import count
+from deixis.arguments import typed
 from deixis.perception.errors import CloudError
 
 
@@ -65,6 +66,14 @@ class PointCloud:
         return f"<PointCloud {', '.join(parts)}>"
 
     def __post_init__(self) -> None:
+        for name, kinds in (("points", "fiu"), ("colours", "iu"), ("labels", "iu"), ("normals", "f")):
+            array = getattr(self, name)
+            optional = array is None and name != "points"
+            if not optional and (not isinstance(array, np.ndarray) or array.ndim == 0 or array.dtype.kind not in kinds):
+                numbers = "numbers" if "f" in kinds else "whole numbers"
+                given = f"of {array.dtype}" if isinstance(array, np.ndarray) else type(array).__name__
+                raise CloudError(f"`{name}` must be an array of {numbers}, got {given}")
+        typed("organised", self.organised, "tuple[int, int] | None")
         n = len(self.points)
         wanted = {"points": (n, 3), "colours": (n, 3), "labels": (n,), "normals": (n, 3)}
         for name, shape in wanted.items():
@@ -72,7 +81,7 @@ class PointCloud:
             if array is not None and array.shape != shape:
                 wanted_shape = "(n, 3)" if name == "points" else f"{shape}, a row for each point"
                 raise CloudError(f"`{name}` must have shape {wanted_shape}, got {array.shape}")
-        if self.organised is not None and self.organised[0] * self.organised[1] != n:
+        if self.organised is not None and (self.organised[0] * self.organised[1] != n or min(self.organised) < 0):
             rows, columns = self.organised
             raise CloudError(
                 f"an image of {rows} rows and {columns} columns must have {rows * columns} points, got {n}"
@@ -101,8 +110,12 @@ class PointCloud:
         PointCloud
             A cloud of the k chosen points, which is not organised.
         """
+        try:
+            points = self.points[chosen]
+        except IndexError as error:
+            raise CloudError(f"`chosen` must be a mask or indices of the {len(self)} points: {error}") from error
         return PointCloud(
-            self.points[chosen],
+            points,
             None if self.colours is None else self.colours[chosen],
             None if self.labels is None else self.labels[chosen],
             None if self.normals is None else self.normals[chosen],

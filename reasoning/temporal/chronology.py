@@ -59,7 +59,7 @@ class Window:
             raise SettingError(f"a window must begin before it ends, got {self.begin:g} and {self.end:g}")
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Chronology(Answer):
     """The implied times and relations of n fluents.
 

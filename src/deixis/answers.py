@@ -11,6 +11,8 @@ import json
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from deixis.printable import visible_line
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -121,10 +123,10 @@ class Answer:
         return _renderers().to_png(self)  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.summary()}>"
+        return f"<{self}>"
 
     def __str__(self) -> str:
-        return f"{type(self).__name__} {self.summary()}"
+        return visible_line(f"{type(self).__name__} {self.summary()}")
 
     def summary(self) -> str:
         """Return the answer in a few words, for ``repr``.

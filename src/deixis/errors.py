@@ -37,6 +37,10 @@ class DeixisError(Exception):
         return str(self.args[0]) if len(self.args) == 1 else super().__str__()
 
 
+class ArgumentError(DeixisError, TypeError):
+    """An argument of a type that its parameter does not take."""
+
+
 class UnknownTermError(DeixisError, KeyError):
     """A word, a relation or a term that the ontology does not have."""
 

@@ -7,11 +7,13 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Self, TypeVar
 
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.knowledge_store import KnowledgeStore
 from deixis.memory.on_demand import default_memory
 from deixis.memory.owner import Closing, ThreadLock
 from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT
+from deixis.printable import visible_line
 from deixis.reasoning.grounding.memory_budget import DEFAULT_MEMORY_LIMIT
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, Select, ViewpointName
 from deixis.view_store import ViewStore
@@ -51,12 +53,13 @@ Result = TypeVar("Result")
 def _one_at_a_time(
     method: Callable[Concatenate[Session, Given], Result],
 ) -> Callable[Concatenate[Session, Given], Result]:
-    """Let only one thread at a time run the methods of a session; others wait."""
+    """Check the arguments of a method of a session, and let only one thread at a time run it; others wait."""
+    checked = checks_arguments(method)
 
     @wraps(method)
     def waiting(self: Session, /, *args: Given.args, **kwargs: Given.kwargs) -> Result:
         with self.lock:
-            return method(self, *args, **kwargs)
+            return checked(self, *args, **kwargs)
 
     return waiting
 
@@ -115,6 +118,7 @@ class Session(Closing):
     >>> folder.cleanup()
     """
 
+    @checks_arguments
     def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
         self.path = default_memory() if memory is None else Path(memory)
         self.lock = ThreadLock()
@@ -122,7 +126,7 @@ class Session(Closing):
         self.view_store = ViewStore(self.path)
 
     def __repr__(self) -> str:
-        return f"<Session {self.path}>"
+        return visible_line(f"<Session {self.path}>")
 
     def __enter__(self) -> Self:
         self.knowledge_store.require_usable()
@@ -141,6 +145,7 @@ class Session(Closing):
 
     # ---- tables
 
+    @checks_arguments
     def ground(
         self,
         script: Script | str | Path,
@@ -924,8 +929,9 @@ class Session(Closing):
         """
         from deixis.grammar.layout.format import layout_script
 
+        last = self.layout(name)
         if self.knowledge_store.count_of_tables(name) < 2:
-            return layout_script(self.layout(name), self.ontology)
+            return layout_script(last, self.ontology)
         return self.concept(name).script(self.ontology)
 
     @_one_at_a_time

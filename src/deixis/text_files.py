@@ -102,6 +102,42 @@ def require_path_or_text(function: str, path: object, text: object) -> None:
         raise TypeError(f"`{function}` must be given either a path or `text`, not both or neither")
 
 
+def is_folder(path: str | Path) -> bool:
+    """Return whether a path names a folder.
+
+    Parameters
+    ----------
+    path
+        The path.
+
+    Returns
+    -------
+    bool
+        True if there is such a folder; False also for a path that is too long for a file system.
+    """
+    with contextlib.suppress(OSError):
+        return Path(path).is_dir()
+    return False
+
+
+def is_present(path: str | Path) -> bool:
+    """Return whether a path names a file, a folder or a device.
+
+    Parameters
+    ----------
+    path
+        The path.
+
+    Returns
+    -------
+    bool
+        True if it does; False also for a path that is too long for a file system.
+    """
+    with contextlib.suppress(OSError):
+        return Path(path).exists()
+    return False
+
+
 @contextmanager
 def changing(file: str | Path) -> Iterator[None]:
     """Keep other processes that call this function from changing the files of a folder inside the block.

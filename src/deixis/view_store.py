@@ -361,8 +361,6 @@ def category_name(text: str) -> str:
     """
     from deixis.reasoning.errors import SettingError
 
-    if not isinstance(text, str):
-        raise SettingError(f"the name of a category must be a string, got {text!r}")
     name = "_".join(text.split())
     if not name:
         raise SettingError("the name of a category must have at least one word, got none")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import inspect
 import json
+import pickle
 from typing import get_type_hints
 
 import numpy as np
@@ -82,6 +84,31 @@ def test_repr_and_str_are_one_short_line(answers: dict[str, Answer]) -> None:
         assert repr(answer).startswith(f"<{name} ")
         assert str(answer).startswith(f"{name} ")
         assert "\n" not in repr(answer)
+
+
+def test_answers_can_be_copied_and_pickled(answers: dict[str, Answer]) -> None:
+    for name, answer in answers.items():
+        for copied in (copy.copy(answer), copy.deepcopy(answer), pickle.loads(pickle.dumps(answer))):
+            found, expected = copied.to_dict(), answer.to_dict()
+            found.pop("report", None), expected.pop("report", None)  # whose blank nodes have no order
+            assert (repr(copied), found) == (repr(answer), expected), name
+
+
+def test_answers_are_compared_without_an_error(answers: dict[str, Answer]) -> None:
+    for answer in answers.values():
+        assert answer == answer
+        assert isinstance(copy.deepcopy(answer) == answer, bool)
+
+
+def test_a_copied_grounding_cannot_be_changed(answers: dict[str, Answer]) -> None:
+    copied = copy.deepcopy(answers["Grounding"])
+    with pytest.raises(TypeError):
+        copied.matches["napkin"] = None  # type: ignore[attr-defined]
+
+
+def test_the_repr_of_an_answer_about_two_lines_is_one() -> None:
+    scene = deixis.Scene.from_boxes([[0, 0]], [[1, 1]], labels=["cup"])
+    assert "\n" not in repr(deixis.refer("the\ncup", scene)) + str(deixis.refer("the\ncup", scene))
 
 
 def test_plain_data_is_json(answers: dict[str, Answer]) -> None:

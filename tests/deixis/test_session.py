@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
+import pickle
 from collections.abc import Mapping
 from datetime import datetime, tzinfo
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import deixis
+from deixis.errors import ArgumentError, DeixisError
 from deixis.examples_data import example
 from deixis.memory.errors import MemoryFormatError
 from deixis.perception.errors import SceneError
 from deixis.perception.scene import Scene
-from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.report.grounding.ground import grounding_lines
 from deixis.testing import assert_grounds
@@ -238,8 +241,54 @@ def test_an_invalid_scene_gets_an_error_with_the_valid_forms() -> None:
         deixis.read_scene(3)  # type: ignore[arg-type]
 
 
+def test_names_with_lone_surrogates_are_unknown_names(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        session.learn(SCRIPT1, SCENE)
+        for call in (session.layout, session.show, session.concept, session.forget):
+            with pytest.raises(DeixisError, match=r"no (layout|lesson) 'a\\udcff'"):
+                call("a\udcff")
+        with pytest.raises(DeixisError, match=r"no layout"):
+            session.check("a\udcff", SCENE)
+
+
+def test_a_session_is_neither_copied_nor_pickled(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+            with pytest.raises(TypeError, match="a Session cannot be copied or pickled"):
+                attempt(session)
+
+
+def test_the_repr_of_a_session_is_one_line(tmp_path: Path) -> None:
+    assert repr(deixis.Session(tmp_path / "a\nb")) == rf"<Session {tmp_path}/a\nb>"
+
+
+def test_rows_of_a_query_can_be_copied_and_pickled(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        session.learn(SCRIPT1, SCENE)
+        found = session.query("SELECT ?role ?name WHERE { ?role a dx:Role ; rdfs:label ?name }")
+    for copied in (copy.deepcopy(found), pickle.loads(pickle.dumps(found))):
+        assert (copied.rows, copied.rows[0].name, copied.to_dict()) == (found.rows, found.rows[0].name, found.to_dict())
+
+
+def test_a_teaching_with_half_a_role_is_refused(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        for settles in ((), ("lesson",), ("lesson", 3), "ab"):
+            with pytest.raises(ArgumentError, match="`settles` must be a tuple of a string and a string or None"):
+                session.teach(SCENE, "o1", "mug", settles=settles)  # type: ignore[arg-type]
+
+
+def test_a_query_takes_numbers_of_numpy(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        session.learn(SCRIPT1, SCENE)
+        limits = {"time_limit": np.float32(9), "memory_limit": np.int64(2**30)}
+        assert session.query("ASK { ?a ?b ?c }", **limits).boolean  # type: ignore[arg-type]
+
+
 def test_a_category_is_named_by_a_text(tmp_path: Path) -> None:
-    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="must be a string, got 3"):
+    with (
+        deixis.Session(tmp_path / "memory") as session,
+        pytest.raises(ArgumentError, match="`category` must be a string, got 3"),
+    ):
         session.teach(SCENE, "o1", 3)  # type: ignore[arg-type]
 
 

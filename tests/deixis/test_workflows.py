@@ -15,7 +15,7 @@ from commands import deixis as command
 from consoles import ROOT, blocks
 
 import deixis
-from deixis.errors import DeixisError
+from deixis.errors import ArgumentError, DeixisError
 from deixis.examples_data import example
 from deixis.memory.errors import MemoryFormatError
 from deixis.perception.clouds.cloud import PointCloud
@@ -133,12 +133,12 @@ def test_a_scene_takes_the_place_of_no_device(seen: Scene, tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda wrong: deixis.perceive(wrong), "`cloud` must be a PointCloud or a file, got"),
-        (lambda wrong: deixis.perceive("x.pcd", settings=wrong), "`settings` must be DetectionSettings, got"),
-        (lambda wrong: deixis.perceive("x.pcd", viewpoint=wrong), "`viewpoint` must be a word such as 'chair', got"),
+        (lambda wrong: deixis.perceive(wrong), "`cloud` must be a PointCloud, a string or a path, got"),
+        (lambda wrong: deixis.perceive("x.pcd", settings=wrong), "`settings` must be a DetectionSettings or None, got"),
+        (lambda wrong: deixis.perceive("x.pcd", viewpoint=wrong), "`viewpoint` must be a string, got"),
         (lambda wrong: deixis.write_scene(wrong, "x.scene.json"), "`scene` must be a Scene, got"),
-        (lambda wrong: deixis.write_scene(Scene(()), wrong), "`file` must be the name of a file, got"),
-        (lambda wrong: deixis.check(wrong, {"objects": []}), "`layout` must be a script, its file or"),
+        (lambda wrong: deixis.write_scene(Scene(()), wrong), "`file` must be a string or a path, got"),
+        (lambda wrong: deixis.check(wrong, {"objects": []}), "`layout` must be a string, a path or a Script, got"),
     ],
 )
 @pytest.mark.parametrize("wrong", [3, {}, b"x"])
@@ -149,7 +149,10 @@ def test_a_wrong_type_is_an_error(call: Callable[[Any], object], message: str, w
 
 @pytest.mark.parametrize("examples", [["script", "scene"], [("script",)], [{"a": 1, "b": 2}], ("ab", "cd"), [3]])
 def test_a_script_without_its_scene_is_an_error(examples: Any, tmp_path: Path) -> None:
-    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="must be pairs"):
+    with (
+        deixis.Session(tmp_path / "memory") as session,
+        pytest.raises(ArgumentError, match="`examples` must be a list of tuples"),
+    ):
         session.learn_all(examples)
     assert not list(tmp_path.iterdir())
 

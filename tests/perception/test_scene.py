@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from deixis.errors import DeixisError
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.scene_json import read_scene, scene_text
@@ -17,6 +19,49 @@ R = default_ontology().relations
 
 FORK = PerceivedObject("fork", (0.0, 0.0), (0.02, 0.2), label="fork", confidence=0.8)
 PLATE = PerceivedObject("plate", (0.05, -0.02), (0.32, 0.25), label="plate")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("id", 3),
+        ("minimum", 0.0),
+        ("maximum", None),
+        ("label", 3),
+        ("confidence", "high"),
+        ("oriented", (0, 0, 0)),
+        ("candidates", ["cup"]),
+        ("front", 1.0),
+        ("heading", "left"),
+    ],
+)
+def test_a_field_of_an_object_with_a_wrong_type_is_named(name: str, value: object) -> None:
+    fields: dict[str, Any] = {"id": "o1", "minimum": (0.0, 0.0), "maximum": (2.0, 1.0), name: value}
+    with pytest.raises(DeixisError, match=f"`{name}` must be"):
+        Scene((PerceivedObject(**fields),))
+
+
+@pytest.mark.parametrize("objects", [None, iter(()), "o1", [3], {"o1": 1}])
+def test_objects_of_a_scene_are_a_tuple_of_objects(objects: Any) -> None:
+    with pytest.raises(DeixisError, match="`objects` must be a list of PerceivedObjects"):
+        Scene(objects)
+
+
+def test_bad_orders_angles_and_numbers_are_refused() -> None:
+    scene = Scene((PerceivedObject("o1", (0.0, 0.0), (2.0, 1.0)),))
+    with pytest.raises(SceneError, match="`order` must have positions of the 1 objects"):
+        scene.reordered([1])
+    with pytest.raises(SceneError, match="`angle` must be a finite number"):
+        scene.turned(math.inf)
+    with pytest.raises(SceneError, match="`min` must be an array of numbers"):
+        Scene.from_boxes([[10**400, 0]], [[1, 1]])
+
+
+def test_an_unknown_id_is_reported_with_the_known_ones() -> None:
+    scene = Scene((PerceivedObject("o1", (0.0, 0.0), (2.0, 1.0)),))
+    for lookup in (scene.__getitem__, scene.cloud_of):
+        with pytest.raises(SceneError, match="there is no object 'o9'; there are: o1"):
+            lookup("o9")
 
 
 def test_the_boxes_are_one_array() -> None:

@@ -68,6 +68,10 @@ class Row(tuple[Term | None, ...]):
         row.variables = variables
         return row
 
+    def __getnewargs__(self) -> tuple[tuple[Term | None, ...], tuple[str, ...]]:
+        """Return the arguments of ``__new__``, with which copies and pickles are made."""
+        return tuple(self), self.variables
+
     def __getitem__(self, key: Any) -> Any:
         """Return the term of a variable's name (with or without ``?``), or of a position."""
         if not isinstance(key, str):

@@ -13,9 +13,11 @@ which numbers the lessons as they are learned (see :mod:`deixis.memory.semantic.
 from __future__ import annotations
 
 from enum import StrEnum
-from urllib.parse import quote, unquote
+from urllib.parse import unquote
 
 import pyoxigraph as ox
+
+from deixis.ontology.rdf.triples import iri_part
 
 GRAPHS = "https://w3id.org/deixis/graph/"
 LESSONS = GRAPHS + "lesson/"
@@ -98,7 +100,7 @@ def lesson_graph(lesson: str, name: GraphName) -> ox.NamedNode:
     >>> lesson_graph("set 1", GraphName.LEARNED).value
     'https://w3id.org/deixis/graph/lesson/set%201/learned'
     """
-    return ox.NamedNode(f"{LESSONS}{quote(lesson, safe='')}/{name}")
+    return ox.NamedNode(f"{LESSONS}{iri_part(lesson)}/{name}")
 
 
 def package_graph(name: GraphName) -> ox.NamedNode:
@@ -225,7 +227,7 @@ def share_graph(lesson: str) -> ox.NamedNode:
     NamedNode
         IRI of the graph.
     """
-    return ox.NamedNode(f"{STATISTICS}lesson/{quote(lesson, safe='')}")
+    return ox.NamedNode(f"{STATISTICS}lesson/{iri_part(lesson)}")
 
 
 ORDER = ox.NamedNode(GRAPHS + "order")
@@ -255,7 +257,7 @@ def views_graph(lesson: str) -> ox.NamedNode:
     NamedNode
         IRI of the graph.
     """
-    return ox.NamedNode(f"{VIEWS}lesson/{quote(lesson, safe='')}")
+    return ox.NamedNode(f"{VIEWS}lesson/{iri_part(lesson)}")
 
 
 def lesson_of_views(graph: object) -> str | None:
@@ -293,7 +295,7 @@ def view_node(id: str) -> ox.NamedNode:
     NamedNode
         IRI of the view.
     """
-    return ox.NamedNode(f"{VIEWS}id/{quote(id, safe='')}")
+    return ox.NamedNode(f"{VIEWS}id/{iri_part(id)}")
 
 
 def copied_graph(iri: str) -> GraphName | None:

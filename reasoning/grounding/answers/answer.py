@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import Answer, count
@@ -215,6 +216,12 @@ class Grounding(Answer):
     scene: object | None = field(default=None, compare=False)
     surface: str | None = None
     members: Mapping[str, tuple[Member, ...]] = field(default_factory=dict)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return vars(self) | {"matches": dict(self.matches)}  # a read-only view cannot be pickled
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state | {"matches": MappingProxyType(state["matches"])})
 
     @property
     def object_matches(self) -> Mapping[str, Match]:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from deixis import answers
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.learning.layouts.experience import Experience
 from deixis.learning.views.views import Known, recognise
 from deixis.ontology.tbox import Ontology
@@ -23,6 +24,7 @@ from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, Explanation, MistakeKind, explain
+from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 
@@ -127,6 +129,7 @@ class Look(Answer):
             found[thing.id] = dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
         return found
 
+    @checks_arguments
     def name(self, thing: str) -> str | None:
         """Return the name of a thing.
 
@@ -140,10 +143,11 @@ class Look(Answer):
         str or None
             The most probable name; None if it is more probably none of the known ones.
         """
-        shares = self.names[thing]
+        shares = self.names[self.scene[thing].id]
         best = next(iter(shares.items()), None)
         return best[0] if best is not None and best[1] >= 1.0 - sum(shares.values()) else None
 
+    @checks_arguments
     def faults(self, layout: str | None = None) -> tuple[Fault, ...]:
         """Return what is wrong with the table.
 
@@ -160,6 +164,9 @@ class Look(Answer):
         wanted = layout or self.layout
         if wanted is None:
             return ()
+        if wanted not in self.explanations:
+            known_names = ", ".join(self.explanations) or "none"
+            raise SettingError(f"`layout` must be a layout that was looked for, got {wanted!r}; it has: {known_names}")
         known, explanation = self.explanations[wanted]
         found = []
         for mistake in explanation.mistakes:

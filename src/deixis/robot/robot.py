@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from deixis.answers import Answer, count, share
+from deixis.arguments import checks_arguments
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.format import format_script
@@ -156,6 +157,7 @@ class Robot(Closing):
     >>> folder.cleanup()
     """
 
+    @checks_arguments
     def __init__(self, memory: Session | str | Path, board: Board | None = None) -> None:
         self.session = memory if isinstance(memory, Session) else Session(memory)
         self._own: Blackboard | None = None
@@ -205,6 +207,10 @@ class Robot(Closing):
         return self._diary
 
     def _time(self, at: float | None) -> float:
+        """Return a time in seconds, the present for None; raise an error unless it is finite and the robot open."""
+        self.session.knowledge_store.require_usable()
+        if at is not None and not math.isfinite(at):
+            raise RobotError(f"`at` must be a finite number of seconds, got {at}")
         return self.diary.board.seconds() if at is None else at
 
     def remember(self) -> None:
@@ -249,6 +255,7 @@ class Robot(Closing):
                 others = [each for each in self._diary.board.now(Pattern(id)) if each.id != fluent.id]
                 self._diary.remembered((fluent, *others))
 
+    @checks_arguments
     def unlearn(self, selection: Selection) -> Unlearned:
         """Take back what was taught, with what it added to the counts of layouts.
 
@@ -283,6 +290,7 @@ class Robot(Closing):
             raise RobotError("the robot must see a table first; call sees() with a scene or a cloud")
         return self._scene
 
+    @checks_arguments
     def sees(self, scene: Scene | PointCloud | str | Path | Mapping[str, Any], at: float | None = None) -> Scene:
         """Take a scene as the present one, and look in it for expected objects.
 
@@ -310,18 +318,20 @@ class Robot(Closing):
         scene = perceived(scene) if isinstance(scene, PointCloud) else as_scene(scene)
         if scene.objects and len(scene.objects[0].minimum) < 3:
             raise RobotError("`scene` must have boxes with heights, in metres, as perceive() makes them")
+        seen_at = self._time(at)
         if self._fullest is not None and not is_same_table(self._fullest, scene):
             self._keep_unnamed(self._fullest)
             self._fullest = None
         self._scene, self._look = scene, None
         if self._fullest is None or len(scene.objects) >= len(self._fullest.objects):
             self._fullest = scene
-        self._seen_at = self._known_at = self._time(at)
+        self._seen_at = self._known_at = seen_at
         self.diary.saw(scene, self._seen_at)
         self._sightings = {}
         self._look_for_expected(self._seen_at)
         return scene
 
+    @checks_arguments
     def watches(self, at: float | None = None) -> None:
         """Record that the table has been in view, without a change, since the robot last saw it.
 
@@ -432,6 +442,7 @@ class Robot(Closing):
         """
         return self.look().layout
 
+    @checks_arguments
     def check(self, layout: str | None = None) -> tuple[Fault, ...]:
         """Return what is wrong with the present table.
 
@@ -457,6 +468,7 @@ class Robot(Closing):
 
     # ---- being taught
 
+    @checks_arguments
     def shown(
         self, label: str, thing: str, by: str = "user", at: float | None = None, event: str | None = None
     ) -> Taught:
@@ -512,6 +524,7 @@ class Robot(Closing):
         self, text: str, by: str = ..., at: float | None = ..., event: str | None = ...
     ) -> Told | tuple[ExpectedObject, ...]: ...
 
+    @checks_arguments
     def told(
         self, text: str | Script, by: str = "user", at: float | None = None, event: str | None = None
     ) -> Told | tuple[ExpectedObject, ...]:
@@ -714,6 +727,7 @@ class Robot(Closing):
             return None
         return LayoutQuestion(found[1])
 
+    @checks_arguments
     def name_layout(
         self, question: LayoutQuestion, name: str | None, by: str = "user", event: str | None = None
     ) -> tuple[TableLesson, ...]:
@@ -780,6 +794,7 @@ class Robot(Closing):
             del self.unnamed[index]
         return tuple(lessons)
 
+    @checks_arguments
     def answers(self, question: Question, thing: str | None, by: str = "user") -> None:
         """Take the answer to a question, and learn from it which thing the role is, and how the thing looks.
 

@@ -7,6 +7,8 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
+from deixis.arguments import checks_arguments
+
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.perception.scene import Scene
@@ -90,6 +92,7 @@ def _in(folder: Path | None, name: str | Path) -> Path:
 
 
 @_errors_in_the_test
+@checks_arguments
 def assert_grounds(
     script: Script | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],
@@ -163,6 +166,7 @@ def assert_grounds(
 
 
 @_errors_in_the_test
+@checks_arguments
 def assert_follows(script: Script | str | Path, fact: str) -> Inference:
     """Assert that a fact follows from a script in the wide reading, or is stated in it.
 
@@ -199,6 +203,7 @@ def assert_follows(script: Script | str | Path, fact: str) -> Inference:
 
 
 @_errors_in_the_test
+@checks_arguments
 def assert_not_follows(script: Script | str | Path, fact: str) -> Inference:
     """Assert that a fact does not follow from a script.
 
@@ -233,6 +238,7 @@ def assert_not_follows(script: Script | str | Path, fact: str) -> Inference:
 
 
 @_errors_in_the_test
+@checks_arguments
 def assert_consistent(script: Script | str | Path) -> Inference:
     """Assert that a script does not contradict itself.
 
@@ -269,6 +275,7 @@ def assert_consistent(script: Script | str | Path) -> Inference:
 
 
 @_errors_in_the_test
+@checks_arguments
 def assert_contradictory(script: Script | str | Path) -> Inference:
     """Assert that a script contradicts itself.
 
@@ -308,6 +315,7 @@ def assert_contradictory(script: Script | str | Path) -> Inference:
 
 
 @_errors_in_the_test
+@checks_arguments
 def assert_checks(
     layout: Script | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],

@@ -60,3 +60,39 @@ def test_the_picture_shows_where_things_belong(robot: deixis.Robot) -> None:
 def test_a_table_without_mistakes_has_no_such_places(robot: deixis.Robot) -> None:
     robot.sees(table(fork=FORK, plate=PLATE, knife=KNIFE, cup=CUP), at=3.0)
     assert not robot.look().places()
+
+
+def test_an_unknown_thing_or_layout_is_reported(robot: deixis.Robot) -> None:
+    look = robot.look()
+    with pytest.raises(deixis.DeixisError, match="there is no object 'o99'"):
+        look.name("o99")
+    with pytest.raises(deixis.DeixisError, match="`layout` must be a layout that was looked for, got 'tea'"):
+        look.faults("tea")
+
+
+@pytest.mark.parametrize("at", [float("nan"), float("inf")])
+def test_a_time_that_is_not_finite_changes_nothing(robot: deixis.Robot, at: float) -> None:
+    before = robot.scene
+    for call in (lambda: robot.sees(table(fork=FORK, plate=PLATE), at=at), lambda: robot.watches(at=at)):
+        with pytest.raises(deixis.DeixisError, match="`at` must be a finite number of seconds"):
+            call()
+    assert robot.scene is before
+
+
+def test_times_may_be_numbers_of_numpy(robot: deixis.Robot) -> None:
+    robot.sees(table(fork=FORK, plate=PLATE, knife=KNIFE, cup=CUP), at=np.float32(3.0))  # type: ignore[arg-type]
+    told = robot.told(TEXT, at=np.int64(4))  # type: ignore[call-overload]
+    assert told.lesson.id == "supper-3"
+
+
+def test_a_closed_robot_sees_nothing(tmp_path: Path) -> None:
+    with deixis.Robot(tmp_path / "memory") as robot:
+        robot.sees(table(fork=FORK, plate=PLATE), at=1.0)
+    for call in (lambda: robot.sees(table(fork=FORK, plate=PLATE), at=2.0), robot.watches):
+        with pytest.raises(deixis.DeixisError, match="this session is closed"):
+            call()
+
+
+def test_a_board_has_the_methods_of_a_blackboard(tmp_path: Path) -> None:
+    with pytest.raises(deixis.DeixisError, match="`board` must be a Board or None, got 3"):
+        deixis.Robot(tmp_path / "memory", board=3)  # type: ignore[arg-type]

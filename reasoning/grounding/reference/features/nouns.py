@@ -96,6 +96,9 @@ class Nouns:
         self._pair = lru_cache(maxsize=100_000)(self._compare)
         self._is_plural = lru_cache(maxsize=10_000)(self._label_is_plural)
 
+    def __reduce__(self) -> tuple[type[Nouns], tuple[Lexicon]]:
+        return type(self), (self._lexicon,)  # without what is kept
+
     def features(self, noun: str, room: Room) -> Array:
         """Return the features of the fit of a noun to each object, under each of its possible classes.
 

@@ -129,9 +129,13 @@ def lessons_named(memory: SemanticMemory, name: str) -> list[ox.NamedNode]:
     list of NamedNode
         IRIs of the layouts, in no stated order.
     """
+    try:
+        label = text(name)
+    except ValueError:  # a lone surrogate, which no literal has
+        return []
     store, graph = memory.store, graph_iri(GraphName.LEARNED)
     is_layout = (iri(W3C.RDFS_SUB_CLASS_OF), iri(DX.LAYOUT), graph)
-    labelled = store.quads_for_pattern(None, iri(W3C.RDFS_LABEL), text(name), graph)
+    labelled = store.quads_for_pattern(None, iri(W3C.RDFS_LABEL), label, graph)
     nodes = (quad.subject for quad in labelled if isinstance(quad.subject, ox.NamedNode))
     return [one for one in nodes if any(store.quads_for_pattern(one, *is_layout))]
 

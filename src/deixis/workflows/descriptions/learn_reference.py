@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError, OntologyError
 from deixis.ontology.strict_json import parse_json
@@ -91,6 +92,7 @@ class LearnedReference(Answer):
         return f"{count(self.descriptions, 'description')}, {before} right before and {after} after"
 
 
+@checks_arguments
 def learn_reference(
     descriptions: str | Path | Iterable[str],
     strength: float = 3.0,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.arguments import checks_arguments
 from deixis.errors import DeixisError
 from deixis.ontology.strict_json import json_mistake, parse_json
 from deixis.perception.scene import Scene
@@ -40,6 +41,7 @@ MIN_LISTED = 1e-3
 """Minimum probability of a listed alternative."""
 
 
+@checks_arguments
 def refer(
     text: str,
     scene: Scene | str | Path | Mapping[str, Any],
@@ -147,7 +149,7 @@ def read_description(text: str) -> Query:
     from deixis.grammar.english.parse import parse_english
     from deixis.workflows.descriptions.description import query_of
 
-    if not isinstance(text, str) or not text.strip():
+    if not text.strip():
         raise DescriptionError(
             "`text` must describe an object, got a blank text; write, say, 'the chair near the door'"
         )

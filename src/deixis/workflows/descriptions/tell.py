@@ -6,13 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.grammar.read import is_english
 from deixis.grammar.reading import StatedFact, joined_choices
 from deixis.grammar.script import Declaration, Script
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
-from deixis.reasoning.errors import OutOfTimeError
+from deixis.reasoning.errors import OutOfTimeError, require_time_limit
 from deixis.workflows.descriptions.telling import (
     NOT_READ,
     Plan,
@@ -32,6 +33,7 @@ TELL_TIME_LIMIT = 10.0
 """Default time limit in seconds."""
 
 
+@checks_arguments
 def tell(
     source: Script | Scene | str | Path | Mapping[str, Any],
     *,
@@ -72,6 +74,7 @@ def tell(
     >>> deixis.tell(script).text
     'The fork is left of the plate and nearer to you than the glass. The plate is left of the knife.'
     """
+    require_time_limit(time_limit)
     deadline = Deadline.after(time_limit)
     if isinstance(source, Script) or (isinstance(source, str | Path) and holds_facts(source)):
         return tell_layout(as_script(source, deadline=deadline), all_facts, deadline)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
+from deixis.arguments import checks_arguments
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding
@@ -16,6 +17,7 @@ from deixis.workflows.grounding.dialogue import AnswerSource, Dialogue
 from deixis.workflows.grounding.ground import ground
 
 
+@checks_arguments
 def ask(
     script: Script | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],

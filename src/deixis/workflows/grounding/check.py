@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import Answer
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
@@ -26,7 +27,7 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.claims import violated
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
-from deixis.reasoning.errors import SettingError
+from deixis.reasoning.errors import SettingError, require_time_limit
 from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS
@@ -87,6 +88,7 @@ class Check(Answer):
         return shacl_report(self.layout, self.scene, self.table, self.ontology.relations)
 
 
+@checks_arguments
 def check(
     layout: str | Path | Script,
     scene: Scene | str | Path | Mapping[str, Any],
@@ -131,8 +133,7 @@ def check(
     from deixis.learning.lessons.lesson import layout_concept
     from deixis.reasoning.comparison.checking import checked_table
 
-    if not isinstance(layout, str | Path | Script):
-        raise SettingError(f"`layout` must be a script, its file or the name of a layout, got {layout!r:.60}")
+    require_time_limit(time_limit)
     known = default_ontology() if knowledge is None else knowledge.ontology
     if isinstance(layout, Script) or is_script_file(layout):
         concept = layout_concept(as_script(layout, known, Deadline.after(time_limit)), "script")

@@ -11,11 +11,11 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from numbers import Integral
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.learning.attributes import attribute_ratios
@@ -148,16 +148,12 @@ class GroundingRequest:
             if not (isinstance(self.ask, Dialogue | Mapping) or callable(self.ask)):
                 raise SettingError(f"`ask` must be a mapping, a function or a Dialogue, got {self.ask!r:.60}")
         if self.max_questions is not None:
-            if not isinstance(self.max_questions, Integral):
-                raise SettingError(f"`max_questions` must be a whole number, got {self.max_questions!r:.60}")
             if self.max_questions < 1:
                 raise SettingError(f"`max_questions` must be at least 1, got {self.max_questions}")
             if self.ask is None:
                 raise SettingError(
                     "`max_questions` needs a source of answers: add --ask or --oracle (ask=), or leave it out"
                 )
-        if not isinstance(self.meaning, Meaning):
-            raise SettingError(f"`meaning` must be a Meaning, as of Session.meaning(), got {self.meaning!r:.60}")
         object.__setattr__(self, "deadline", self.deadline or Deadline.after(self.time_limit))
 
     @property
@@ -266,6 +262,7 @@ class GroundingRequest:
             return False
 
 
+@checks_arguments
 def ground(
     script: Script | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],

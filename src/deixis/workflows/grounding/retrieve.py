@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.read import read_script_file
@@ -18,8 +19,10 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.likeness import ComparedScene, Comparison, Described, Likeness, compared_scene
 from deixis.reasoning.comparison.retrieval import Progress, rank_layouts, rank_scenes
+from deixis.reasoning.errors import require_time_limit
 from deixis.reasoning.grounding.evidence.properties.labels import category_of
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
+from deixis.text_files import is_folder
 
 if TYPE_CHECKING:
     from deixis.learning.lessons.recollection import Recollection
@@ -106,6 +109,7 @@ class Retrieval(Answer):
         return f"{count(len(self.found), 'result')} among {self.among}{best}"
 
 
+@checks_arguments
 def retrieve(
     query: Script | Scene | str | Path | Mapping[str, Any],
     among: str | Path | None = None,
@@ -162,6 +166,7 @@ def retrieve(
     script1.layout             1.000    1.000      1.000
     script2.layout             0.854    0.889      0.786
     """
+    require_time_limit(time_limit)
     deadline, folder = Deadline.after(time_limit), None if among is None else Path(among)
     comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)
     if isinstance(query, str | Path):
@@ -238,7 +243,7 @@ def _known_scenes(
 
 
 def _files(folder: Path, pattern: str, what: str) -> list[Path]:
-    if not folder.is_dir():
+    if not is_folder(folder):
         raise DeixisError(f"{folder}: not a folder; name a folder of {what}")
     found = sorted(path for path in folder.glob(pattern) if path.is_file())
     if not found:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.grammar.formats.habits import StatedHabits, read_habits
 from deixis.ontology.tbox import default_ontology
@@ -40,6 +41,7 @@ class Placements(Answer):
         return f"{count(len(self.rules), 'rule')}, {count(len(self.things), 'thing')} placed"
 
 
+@checks_arguments
 def habits(
     examples: Mapping[str, str] | str | Path,
     things: Sequence[str] = (),

@@ -14,7 +14,7 @@ from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.ontology.lessons.types import ANONYMOUS
 from deixis.perception.scene import Scene
-from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
+from deixis.reasoning.errors import InconsistencyError, NothingFoundError
 from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.version import VERSION
@@ -138,9 +138,6 @@ def learn(
         If a script contradicts itself or what was learned before; nothing is changed then.
     """
     pairs = list(examples)
-    for pair in pairs:
-        if isinstance(pair, str | Mapping) or not isinstance(pair, Sequence) or len(pair) != 2:
-            raise SettingError(f"`examples` must be pairs of a script and its scene, got {pair!r:.60} among them")
     if knowledge.exists():
         knowledge.memory().require_writable()
     taken: set[str] = set()

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import Answer, count
+from deixis.arguments import require_fields
 from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.views.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
@@ -31,6 +32,7 @@ from deixis.ontology.things.kinds import plain_name
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.fluent import Statement
+from deixis.text_files import is_present
 from deixis.view_store import SETTLES, ViewStore, category_name
 from deixis.workflows.descriptions.remembered_attributes import CALLED, NOT_CALLED, entry_of
 from deixis.workflows.knowledge.sentences import plain
@@ -74,6 +76,7 @@ class Selection:
             raise SettingError(
                 "name what to take back: a lesson, sentence, label, view, table, teacher, day, or a time span"
             )
+        require_fields(self)
         for name in ("since", "until"):
             moment = getattr(self, name)
             if moment is not None and (not isinstance(moment, datetime) or moment.utcoffset() is None):
@@ -323,7 +326,7 @@ def _words(statement: Statement) -> str:
 
 def _table(table: Scene | str | Path | Mapping[str, Any] | None) -> tuple[str | None, str | None]:
     """Return the key of the boxes of a table, or else the name of a scene file that no longer exists."""
-    if isinstance(table, str | Path) and not Path(table).exists():
+    if isinstance(table, str | Path) and not is_present(table):
         return None, str(table)
     return (None, None) if table is None else (boxes_key(as_scene(table)), None)
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.graph.facts import Fact
@@ -119,6 +120,7 @@ class Imagination(Answer):
         return bool(self.tables) or self.none is not None
 
 
+@checks_arguments
 def imagine(
     script: Script | str | Path,
     *,

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError, UnknownTermError
 from deixis.grammar.layout.parser import parse_script
@@ -21,7 +22,7 @@ from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.demands import demands_of
 from deixis.reasoning.entailment.derivations import Derivation
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
-from deixis.reasoning.errors import OutOfTimeError
+from deixis.reasoning.errors import OutOfTimeError, require_time_limit
 from deixis.workflows.layouts.read import as_script
 
 MAX_STEPS_LISTED = 12
@@ -257,6 +258,7 @@ def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> b
         return None
 
 
+@checks_arguments
 def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Inference:
     """Infer what follows from a script in the wide reading, and whether it contradicts itself.
 
@@ -288,6 +290,7 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     >>> deixis.infer(deixis.read_script(text="fork left of plate; plate left of fork")).consistent
     False
     """
+    require_time_limit(time_limit)
     deadline = Deadline.after(time_limit)
     read = as_script(script, deadline=deadline)
     return inference_of(read, deadline.left)

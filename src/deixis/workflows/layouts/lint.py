@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.layout.names import key_of
@@ -18,6 +19,7 @@ from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.export import ON_SURFACE
 from deixis.ontology.graph.facts import Fact, Source
 from deixis.ontology.things.kinds import plain_name
+from deixis.reasoning.errors import require_time_limit
 from deixis.workflows.layouts.read import as_script
 
 LINT_TIME_LIMIT = 5.0
@@ -85,6 +87,7 @@ class Lint(Answer):
         return f"{self.file}: {count(len(self.findings), 'warning')}"
 
 
+@checks_arguments
 def lint(
     script: Script | str | Path,
     *,
@@ -125,6 +128,7 @@ def lint(
     for prefix in (*select, *ignore):
         if not prefix or not any(code.startswith(prefix.upper()) for code in CODES):
             raise DeixisError(f"lint: no code begins with '{prefix}'; the codes are {', '.join(CODES)}")
+    require_time_limit(time_limit)
     deadline = Deadline.after(time_limit)
     read = as_script(script, deadline=deadline)
     from_facts, complete = _inferred_findings(read, deadline)

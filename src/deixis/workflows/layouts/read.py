@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError, ScriptFileError
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 SCRIPT_ENDING, SCENE_ENDING = ".layout", ".scene.json"
 
 
+@checks_arguments
 def read_script(
     path: str | Path | None = None,
     *,

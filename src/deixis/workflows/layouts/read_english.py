@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
@@ -41,6 +42,7 @@ class ReadText(Answer):
         return f"{sentences}, {facts}, {self.reading.understood:.0%} of the words understood"
 
 
+@checks_arguments
 def read(
     path: str | Path | None = None, *, text: str | None = None, strict: bool = False, time_limit: float = 10.0
 ) -> ReadText:

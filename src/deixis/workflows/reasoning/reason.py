@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pyoxigraph as ox
 
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.memory.semantic.rdf.files import PREFIXES, read_quads
 from deixis.memory.semantic.rdf.graphs import GraphName
@@ -24,6 +25,7 @@ _PREFIX = re.compile(r"^\s*@?prefix\s+([\w.-]*):\s*<([^<>\s]*)>", re.IGNORECASE 
 _STATED = (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED, GraphName.EPISODES)
 
 
+@checks_arguments
 def reason(
     data: SemanticMemory | str | Path | Sequence[str | Path],
     engine: LogicEngine | str = LogicEngine.AUTO,

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.formats.networks import NetworkText, parse_networks, read_networks
@@ -28,7 +29,7 @@ from deixis.reasoning.qualitative.networks.realisation.boxes import unrelated
 from deixis.reasoning.qualitative.networks.search.consistency import Verdict
 from deixis.reasoning.qualitative.networks.search.consistency import solve as solve_network
 from deixis.reasoning.qualitative.relate import relate
-from deixis.text_files import require_path_or_text
+from deixis.text_files import is_folder, require_path_or_text
 
 if TYPE_CHECKING:
     from deixis.reasoning.qualitative.calculi.calculus import Calculus
@@ -117,6 +118,7 @@ class Solved(Answer):
         return f"{count(len(self.networks), 'network')}: {self.verdict}"
 
 
+@checks_arguments
 def solve(
     network: str | Path | None = None,
     *,
@@ -203,7 +205,7 @@ def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
     """
     from deixis.reasoning.qualitative.calculi.registry import calculus
 
-    if text.endswith(".spec") or Path(text).is_dir():
+    if text.endswith(".spec") or is_folder(text):
         from deixis.grammar.formats.calculi import read_calculus
 
         brought = read_calculus(text)

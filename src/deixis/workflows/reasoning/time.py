@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from deixis.arguments import checks_arguments
 from deixis.grammar.formats.fluents import FluentFile, parse_fluents, read_fluents
 from deixis.reasoning.errors import require_time_limit
 from deixis.reasoning.qualitative.networks.closure.state import Progress
@@ -13,6 +14,7 @@ from deixis.reasoning.temporal.timeline import Timeline
 from deixis.text_files import require_path_or_text
 
 
+@checks_arguments
 def chronology(fluents: str | Path | None = None, *, text: str | None = None, time_limit: float = 10.0) -> Chronology:
     """Return the implied bounds of when fluents held, and the possible relations of every pair.
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pyoxigraph as ox
 
+from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.memory.semantic.rdf.files import read_quads
@@ -18,6 +19,7 @@ from deixis.reasoning.errors import require_time_limit
 from deixis.workflows.reasoning.reason import paths
 
 
+@checks_arguments
 def validate(
     data: SemanticMemory | str | Path | Sequence[str | Path],
     shapes: str | Path | Sequence[str | Path] = SHAPES_FILE,

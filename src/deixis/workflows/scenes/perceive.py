@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from deixis.arguments import checks_arguments
 from deixis.errors import DeixisError
 from deixis.memory.owner import rename
 from deixis.perception.clouds.cloud import PointCloud
@@ -20,6 +21,7 @@ from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.features.orientation import with_headings
 from deixis.perception.formats.scene_json import scene_text
 from deixis.perception.scene import Scene
+from deixis.text_files import is_folder, is_present
 
 READING = "reading the cloud"
 
@@ -30,6 +32,7 @@ _NUMBERED = re.compile(r"o\d+")
 _CLOUD = re.compile(r"o\d+(-[0-9a-f]{8}|\.new)\.pcd")
 
 
+@checks_arguments
 def perceive(
     cloud: PointCloud | str | Path,
     intrinsics: str | Path | None = None,
@@ -78,13 +81,7 @@ def perceive(
     >>> scene.objects[0].cloud is not None
     True
     """
-    if settings is not None and not isinstance(settings, DetectionSettings):
-        raise CloudError(f"`settings` must be DetectionSettings, got {settings!r:.60}")
-    if not isinstance(cloud, PointCloud | str | Path):
-        raise CloudError(
-            f"`cloud` must be a PointCloud or a file, got {type(cloud).__name__}; PointCloud(points) makes one"
-        )
-    if not isinstance(viewpoint, str) or not viewpoint.strip() or not viewpoint.isprintable():
+    if not viewpoint.strip() or not viewpoint.isprintable():
         raise SceneError(f"`viewpoint` must be a word such as 'chair', got {viewpoint!r}")
     if isinstance(cloud, PointCloud):
         return with_headings(detect(cloud, settings, stage).scene(viewpoint))
@@ -97,6 +94,7 @@ def perceive(
         raise CloudError(f"{cloud}: {error}") from error
 
 
+@checks_arguments
 def write_scene(scene: Scene, file: str | Path) -> Scene:
     """Write a scene to a ``.scene.json``, and clouds that are in memory into a folder beside it.
 
@@ -131,14 +129,10 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
     ...     deixis.read_scene(f"{folder}/table.scene.json").ids
     ('o1',)
     """
-    if not isinstance(scene, Scene):
-        raise SceneError(f"`scene` must be a Scene, got {type(scene).__name__}; read_scene makes one")
-    if not isinstance(file, str | Path):
-        raise SceneError(f"`file` must be the name of a file, got {file!r:.60}")
     file = Path(file)
-    if not file.name or file.is_dir():
+    if not file.name or is_folder(file):
         raise DeixisError(f"{file}: this is a folder; name a file")
-    if file.exists() and not file.is_file():
+    if is_present(file) and not file.is_file():
         raise DeixisError(f"{file}: this is a device or a pipe, which the scene would replace; name a file")
     folder, base = clouds_folder(file), Path(scene.file).parent
     perceived = scene.detection is not None or any(isinstance(thing.cloud, PointCloud) for thing in scene.objects)

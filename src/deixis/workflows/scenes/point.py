@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.grammar.utterances import Utterance, read_utterances
 from deixis.perception.errors import PointingError
 from deixis.perception.formats.skeletons import read_skeletons
@@ -113,6 +114,7 @@ class Shown(Answer):
         return f"{count(len(self.pointings), 'gesture')}, {count(len(self.taught), 'name')} taught"
 
 
+@checks_arguments
 def point(
     skeletons: Iterable[Skeleton] | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],

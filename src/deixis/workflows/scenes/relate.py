@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from deixis.arguments import checks_arguments
 from deixis.perception.scene import Scene
 from deixis.reasoning.qualitative.relate import Related
 from deixis.reasoning.qualitative.relate import relate as codes_of
 from deixis.workflows.layouts.read import as_scene
 
 
+@checks_arguments
 def relate(
     scene: Scene | str | Path,
     calculus: str = "ra",

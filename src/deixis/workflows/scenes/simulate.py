@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.grammar.read import read_script_file
 from deixis.grammar.script import Script
 from deixis.perception.clouds.cloud import PointCloud
@@ -90,6 +91,7 @@ class Simulation(Answer):
         return f"{count(len(self.truth.objects), 'thing')}, {measured} of {len(self.cloud)} points measured"
 
 
+@checks_arguments
 def simulate(layout: LaidScript | Script | str | Path, view: CameraSetup | None = None, seed: int = 0) -> Simulation:
     """Lay a table as a script says, and look at it with a simulated depth camera.
 

@@ -11,6 +11,7 @@ import pytest
 from commands import deixis
 
 import deixis as package
+from deixis.errors import ArgumentError
 from deixis.examples_data import example
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
@@ -130,14 +131,14 @@ def test_who_does_not_answer_is_asked_once() -> None:
         ({"viewpoint": "above"}, SettingError, "`viewpoint` must be one of stated, quarter, unknown, got 'above'"),
         ({"ask": {}, "engine": "scalable"}, SettingError, "only the engine 'exact' asks"),
         ({"ask": {}, "max_questions": 0}, SettingError, "`max_questions` must be at least 1, got 0"),
-        ({"ask": {}, "max_questions": 1.5}, SettingError, "`max_questions` must be a whole number, got 1.5"),
+        ({"ask": {}, "max_questions": 1.5}, ArgumentError, "`max_questions` must be a whole number or None, got 1.5"),
         ({"max_questions": 2}, SettingError, "`max_questions` needs a source of answers"),
         ({"ask": [3]}, SettingError, "`ask` must be a mapping, a function or a Dialogue"),
         ({"ask": lambda question, situation: 3}, OracleError, "must be one of its answers, got '3'"),
-        ({"meaning": None}, SettingError, "`meaning` must be a Meaning"),
+        ({"meaning": None}, ArgumentError, "`meaning` must be a Meaning"),
         ({"time_limit": -1.0}, SettingError, "time_limit"),
-        ({"time_limit": "soon"}, SettingError, "time_limit"),
-        ({"time_limit": None}, SettingError, "time_limit"),
+        ({"time_limit": "soon"}, ArgumentError, "time_limit"),
+        ({"time_limit": None}, ArgumentError, "time_limit"),
         ({"engine": "exakt"}, package.DeixisError, "there is no engine 'exakt'"),
         ({"ask": {"fork": "o99"}}, OracleError, "'fork' has the id 'o99', which is not in the scene"),
         ({"ask": lambda question, situation: "perhaps"}, OracleError, "must be one of its answers, got 'perhaps'"),
