@@ -312,12 +312,12 @@ def test_a_thousand_alike_do_not_list_each_other() -> None:
 
 
 def test_a_search_that_was_cut_short_is_not_against_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ground with a bad map where the sum over all maps is estimated from the map."""
+    """Ground with a bad map where the sum over all maps is estimated from the map, as seen from one side."""
     table = generate(60, seed=0)
     evidence = replace(no_unary_evidence(table.description(), table.scene()), memory_limited=True)
     bad = np.random.default_rng(0).permutation(table.truth)
     monkeypatch.setattr(map_engines, "exact", lambda *given: replace(exact(*given), assignment=bad, bound=np.inf))
-    found = ground(evidence, EXACT, Deadline.after(2.0))
+    found = ground(evidence, engine_named("exact", sides=AS_IT_STANDS), Deadline.after(2.0))
     assert found.fits is None and found.probabilities is Standing.NONE
     assert {match.perceived for match in found.matches.values()} == {f"o{thing:04}" for thing in bad}
     assert any("before the probabilities" in note for note in found.notes)
