@@ -288,7 +288,7 @@ def log_sizes(things: Sequence[PerceivedObject]) -> Array:
         sorted(size[:2] if thing.oriented is None else thing.oriented.extents[:2], reverse=True)
         for thing, size in zip(things, (high - low).tolist(), strict=True)
     ]
-    height = high[:, 2] - np.where(resting, low[:, 2], 0.0)
+    height = np.maximum(high[:, 2] - np.where(resting, low[:, 2], 0.0), 0.0)  # a tracked thing may be below the table
     found: Array = np.log(np.column_stack([plan, height]) + SIZE_ERROR)
     return found
 
