@@ -114,13 +114,13 @@ def likely_length(seen: float, width: float, most: float) -> tuple[float, float]
     (0.39, 0.0)
     """
     weights = sum((prior for widest, prior in _priors() if width <= widest + TOO_WIDE), np.zeros(len(LENGTHS)))
-    possible = np.flatnonzero((seen <= LENGTHS) & (most >= LENGTHS))
-    weights = np.where(np.isin(np.arange(len(LENGTHS)), possible), weights, 0.0)
+    possible = (seen <= LENGTHS) & (most >= LENGTHS)
+    weights = np.where(possible, weights, 0.0)
     total = float(weights.sum())
     if total <= 0:
         return seen, 0.0
     within = np.convolve(weights, np.ones(2 * round(RIGHT / LENGTHS[1]) + 1), "same")
-    length = float(LENGTHS[possible[within[possible].argmax()]])
+    length = float(LENGTHS[possible][within[possible].argmax()])
     return length, float(np.sqrt((LENGTHS - length) ** 2 @ weights / total))
 
 

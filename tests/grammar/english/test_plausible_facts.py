@@ -24,6 +24,14 @@ def asserted(text: str) -> list[str]:
     return [str(f.content) for f in read(text).stated if f.asserted and not str(f.content).startswith(minor)]
 
 
+def asserted_if_any(text: str) -> list[str]:
+    """Return the places that a text asserts; none if no fact of it was understood."""
+    try:
+        return asserted(text)
+    except ScriptError:
+        return []
+
+
 @pytest.mark.parametrize(
     "noun",
     ["eye level", "location", "left", "preparation", "elegance", "moss layer adds", "six inches", "buffet style",
@@ -160,10 +168,7 @@ def test_things_of_orchestras_kitchens_and_rooms(text: str, expected: list[str])
     ],
 )  # fmt: skip
 def test_time_and_manner_of_steps(text: str, expected: list[str]) -> None:
-    try:
-        assert asserted(text) == expected
-    except ScriptError:
-        assert expected == []
+    assert asserted_if_any(text) == expected
 
 
 @pytest.mark.parametrize(
@@ -180,10 +185,7 @@ def test_time_and_manner_of_steps(text: str, expected: list[str]) -> None:
     ],
 )  # fmt: skip
 def test_settings_sides_and_what_may_be(text: str, expected: list[str]) -> None:
-    try:
-        assert asserted(text) == expected
-    except ScriptError:
-        assert expected == []
+    assert asserted_if_any(text) == expected
 
 
 @pytest.mark.parametrize(

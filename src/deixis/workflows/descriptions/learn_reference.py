@@ -126,7 +126,7 @@ def learn_reference(
     DescriptionError
         If no line teaches anything.
     SettingError
-        If ``strength`` or ``time_limit`` is not above 0.
+        If ``strength`` is not above 0, or ``time_limit`` is below 0.
 
     Notes
     -----
