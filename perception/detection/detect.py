@@ -431,9 +431,10 @@ def _pieces(
     least = np.maximum(settings.height, settings.heights.object_noise_ratio * rising.upper(view.distance[chosen]))
     fates = np.full(len(counts), Fate.DISCARDED, np.int8)
     fates[(counts >= settings.least_points) & (within < settings.heights.min_share_above_table)] = Fate.BESIDE
+    members = np.split(np.argsort(found, kind="stable"), np.cumsum(counts)[:-1])
     for piece in np.flatnonzero((counts >= settings.least_points) & (fates == Fate.DISCARDED)).tolist():
-        points = surface.points[found == piece]
-        rise = np.quantile(points[:, 2] / least[found == piece], settings.heights.object_quantile)
+        points = surface.points[members[piece]]
+        rise = np.quantile(points[:, 2] / least[members[piece]], settings.heights.object_quantile)
         if rise > 1.0 and np.ptp(points, axis=0).max() >= settings.least_length:
             fates[piece] = Fate.REPORTED
     of[chosen] = found

@@ -105,8 +105,9 @@ def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop
     chosen[sizes.argmax()] = True
     wide = np.bincount(parts.ravel(), minlength=count + 1) >= limits.min_part_cells
     left = [int(part) for part in np.argsort(-sizes) if part and wide[part] and not chosen[part]]
+    upright = _upright(view.points, of, heights, plane, settings) if left else chosen
     while more := [part for part in left if _goes_on(shown, chosen[parts], parts == part, limits)]:
-        chosen[[part for part in more if not _is_upright(view.points, of == part, heights, plane, settings)]] = True
+        chosen[[part for part in more if not upright[part]]] = True
         left = [part for part in left if part not in more]
     return TableTop(plane, view.points, np.flatnonzero(chosen[of]), settings)
 
@@ -159,22 +160,29 @@ def _shown(
     return shown.reshape(shape)
 
 
-def _is_upright(
+def _upright(
     points: NDArray[np.float64],
-    part: NDArray[np.bool_],
+    of: NDArray[np.intp],
     heights: NDArray[np.float64],
     plane: Plane,
     settings: DetectionSettings,
-) -> bool:
-    """Return True if nearly all of a part (n,) has something right above it: a strip of a wall or a tall object."""
+) -> NDArray[np.bool_]:
+    """Return True for each part that has something right above nearly all of it: a strip of a wall or a tall object.
+
+    ``of`` (n,) gives the part of each point, from 1; 0 for points that are not level with the plane.
+    """
     limits = settings.top
     above = (heights > settings.plane.table_band) & (heights < settings.reach)
-    plan = np.floor(points[part | above] @ plane.across.T / limits.plan_cell).astype(np.int64)
+    used = np.flatnonzero((of > 0) | above)
+    plan = np.floor(points[used] @ plane.across.T / limits.plan_cell).astype(np.int64)
     plan -= plan.min(axis=0)
-    codes = plan[:, 0] * (int(plan[:, 1].max()) + 1) + plan[:, 1]
-    of_part = part[part | above]
-    own = np.unique(codes[of_part])
-    return bool(np.isin(own, codes[~of_part]).mean() > limits.max_covered_share)
+    cells = np.unique(plan[:, 0] * (int(plan[:, 1].max()) + 1) + plan[:, 1], return_inverse=True)[1]
+    count = int(cells.max()) + 1
+    is_covered = np.bincount(cells[above[used]], minlength=count) > 0
+    part, cell = np.divmod(np.unique(of[used] * count + cells), count)
+    own = np.bincount(part)
+    covered = np.bincount(part[is_covered[cell]], minlength=len(own))
+    return covered > limits.max_covered_share * own
 
 
 def _goes_on(
