@@ -225,7 +225,8 @@ def likeliest_pose(
     level = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
     aslant = np.cos(limits.assumed_elevation) * level + np.sin(limits.assumed_elevation) * plane.normal
     places = [middle + limits.assumed_distance * direction for direction in (plane.normal, *aslant)]
-    shares = [apart(few, place, limits) for place in places]
+    reach = neighbour_reach(few, limits)
+    shares = [apart(few, place, limits, reach) for place in places]
     eye = places[int(np.argmin(shares))]
     if far_share < limits.max_far_share and min(shares) > far_share / 2:
         return pose
@@ -253,7 +254,34 @@ def sampled(points: NDArray[_Kind], settings: DetectionSettings) -> NDArray[_Kin
     return points[np.random.default_rng(settings.seed).choice(len(points), size, replace=False)]
 
 
-def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: ViewpointSettings) -> float:
+def neighbour_reach(points: NDArray[np.float64], settings: ViewpointSettings) -> NDArray[np.float64]:
+    """Return the distance of each point from the last of its neighbours in space.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    settings
+        Number of neighbours.
+
+    Returns
+    -------
+    ndarray
+        Distances of shape (n,), in metres; infinite for too few points.
+    """
+    from scipy.spatial import cKDTree
+
+    count = settings.neighbours + 1
+    reach: NDArray[np.float64] = cKDTree(points).query(points, k=[count])[0][:, 0]
+    return reach
+
+
+def apart(
+    points: NDArray[np.float64],
+    eye: NDArray[np.float64],
+    settings: ViewpointSettings,
+    reach: NDArray[np.float64] | None = None,
+) -> float:
     """Return the fraction of points' neighbours in direction that are far apart in space.
 
     Parameters
@@ -264,6 +292,8 @@ def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: Viewp
         Supposed viewpoint, shape (3,).
     settings
         Number of neighbours, and the ratio from which they are far apart.
+    reach
+        Result of :func:`neighbour_reach` for these points, if it is known.
 
     Returns
     -------
@@ -285,7 +315,8 @@ def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: Viewp
         return 0.0
     rays = directions(points, eye)
     near = cKDTree(rays).query(rays, k=count + 1)[1][:, 1:]
-    reach = cKDTree(points).query(points, k=count + 1)[0][:, -1]
+    if reach is None:
+        reach = neighbour_reach(points, settings)
     away = np.linalg.norm(points[near] - points[:, None], axis=2)
     return float((away > settings.far_ratio * reach[:, None]).mean())
 
