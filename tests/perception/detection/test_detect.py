@@ -9,6 +9,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from hard_tables import odd_clouds
 from numpy.typing import NDArray
 from timing import processor_time_below
 
@@ -264,6 +265,39 @@ def test_scattered_depth_takes_seconds(share: float, nearest: float, farthest: f
     detect(cloud)  # the first call compiles
     with processor_time_below(3.0):
         detect(replace(cloud, points=(cloud.points * moved[:, None]).astype(np.float32)))
+
+
+@pytest.mark.parametrize("bare", [False, True])
+def test_depth_with_5_percent_noise_takes_seconds(bare: bool) -> None:
+    """Check the time for an image in which half of the pixels are moved along their rays by up to 5 %."""
+    cloud = odd_clouds(0)["half the pixels within 5 % of their depth"]
+    if bare:
+        cloud = cloud.take(np.random.default_rng(0).permutation(np.flatnonzero(cloud.finite)))
+    detect(cloud)  # the first call compiles
+    with processor_time_below(3.0):
+        detect(cloud)
+
+
+def test_a_surface_of_bumps_takes_seconds() -> None:
+    """Check the time for hundreds of level parts, of which each may be a part of the table."""
+    cloud = odd_clouds(0)["a surface of bumps"]
+    with processor_time_below(3.0):
+        detect(cloud)
+
+
+def test_a_heap_of_bare_points_takes_seconds() -> None:
+    cloud = odd_clouds(0)["a heap of points"]
+    with processor_time_below(3.0):
+        detect(cloud)
+
+
+def test_the_order_of_bare_points_changes_little(boxes_seen: Look) -> None:
+    cloud = boxes_seen([PLANK, CUBE, LOW, STACKED])
+    kept = np.flatnonzero(cloud.finite)
+    rng = np.random.default_rng(2)
+    looks = [detect(cloud.take(rng.permutation(kept))) for _ in range(2)]
+    assert looks[0].boxes.shape == looks[1].boxes.shape
+    assert looks[0].boxes == pytest.approx(looks[1].boxes, abs=0.005)
 
 
 def test_scattered_points_are_not_a_table() -> None:

@@ -80,6 +80,7 @@ def test_tables_are_numbered_from_one() -> None:
 
 
 def test_without_a_table_there_is_no_second_one() -> None:
-    scattered = np.random.default_rng(0).uniform(-1, 1, (500, 3)).astype(np.float32)
-    found = detect(PointCloud(scattered), DetectionSettings(table=2))
+    y, z = (axis.ravel() for axis in np.mgrid[-1:1:0.02, -1:1:0.02])
+    wall = np.stack([np.full(y.shape, 1.0), y, z], axis=1).astype(np.float32)
+    found = detect(PointCloud(wall), DetectionSettings(table=2, up=(0.0, 0.0, 1.0)))
     assert found.table is None and found.notes[0].startswith("no table was found")
