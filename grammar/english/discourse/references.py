@@ -497,8 +497,10 @@ class References:
         """
         leaves = list(group.leaves())
         if phrase.determiner == "other" or phrase.pronoun == "other":
-            taken = [leaf for leaf in leaves if leaf.is_picked]
-            return next((leaf for leaf in leaves if leaf not in taken), leaves[-1])
+            left = [leaf for leaf in leaves if not leaf.is_picked]
+            if phrase.plural and len(left) > 1 and len(left) >= (phrase.count or 0):  # 'the other two', 'the others'
+                return Entity("", members=[self._picked(leaf, phrase) for leaf in left[: phrase.count]])
+            return left[0] if left else leaves[-1]
         for predicate in phrase.predicates:  # 'the second fork from the left', with the leaves from left to right
             rank = predicate.value.rank if predicate.relation == "ordinal" and predicate.value is not None else None
             if rank is not None and 0 < abs(rank) <= len(leaves):
@@ -596,6 +598,9 @@ class References:
             group = self.find(phrase.of, relation, besides)
             if group is None or word in ("all", "both", "each", "everything"):
                 return group
+            if word == "one" and group.members and not phrase.plural:  # 'one of the cups', which another one is not
+                free = (leaf for leaf in group.leaves() if not leaf.is_picked)
+                return self._picked(self.member(group, phrase) or next(free, None) or next(group.leaves()), phrase)
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("it", "they") and self._is_lost(phrase):
             return None
@@ -751,6 +756,12 @@ class References:
             if kinds and many is not None and many.plural and many.noun and many.role is Role.THING:
                 return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
             return self._another_one(phrase, besides, relation)
+        if ranks and min(ranks) > group.size and group.noun and phrase.of is None:
+            return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'the third' after two of them
+        some = phrase.of is not None or (phrase.determiner is None and relation is None)
+        if some and 1 < (phrase.count or 0) <= group.size and not phrase.adjectives:
+            chosen = [*free, *(leaf for leaf in leaves if leaf not in free)][: phrase.count]
+            return Entity("", members=[self._picked(leaf, phrase) for leaf in chosen])  # 'three of the five forks'
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
             found = self._picked(free[0], phrase) if free else None

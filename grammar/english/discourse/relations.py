@@ -115,6 +115,10 @@ class Relations(Mentions):
         found: list[Entity | Region] = []
         restricted, end = self.restricted.get(subject, (None, 0))
         options = [a for a in predicate.arguments if a.joined_by == "or"]
+        if options and relation != "between" and not self.how.positive:
+            for member in options[0].members:  # 'not next to the jar or the box' denies both
+                self._relate(subject, replace(predicate, arguments=(member,)), others)
+            return
         if options and relation != "between" and not self.how.alternative:
             self.alternatives += 1
             outer = self.how
@@ -133,6 +137,9 @@ class Relations(Mentions):
             first, second = subject.leaves()
             self._pair(first, relation, second, False)
             self._pair(second, relation, first, False)
+            return
+        if predicate.reversed and [a.pronoun for a in predicate.arguments] == ["nothing"]:
+            self._add(f"none_{relation}", (subject,), ())  # 'the plate has nothing on it'
             return
         for phrase in predicate.arguments:
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
