@@ -373,6 +373,8 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
+        if clause.existential and not clause.predicates and subject.members:
+            subject = _with_shared_surface(subject)
         text = self.text[self.references.start : self.end]
         limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(text) or EVENT.match(text)
         if limit is not None and self.how.condition is None:
@@ -624,6 +626,21 @@ def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:
         return frozenset()
     vague = subject.pronoun in ("these", "those") and not (subject.head or subject.of or subject.adjectives)
     return frozenset({Guess.THOSE} if vague else {Guess.BARE} if _can_be_verb(subject) else ())
+
+
+def _with_shared_surface(phrase: NounPhrase) -> NounPhrase:
+    """Return *two bowls, a spoon and a jar on the mat*, which are there, with the mat as the place of each."""
+    *others, last = phrase.members
+    shared = phrase.joined_by == "and" and not any(member.predicates or member.negated for member in others)
+    named = {last_word(member.head) for member in phrase.members}
+    carried = last.predicates and all(
+        p.relation in ("on", "inside") and not p.reversed
+        and all(a.determiner == "the" and last_word(a.head) not in named for a in p.arguments)
+        for p in last.predicates
+    )  # fmt: skip
+    if not (shared and carried):
+        return phrase
+    return replace(phrase, members=tuple(replace(member, predicates=last.predicates) for member in phrase.members))
 
 
 def _without_verb(phrase: NounPhrase) -> NounPhrase:

@@ -630,16 +630,17 @@ class References:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None
         if word in ("former", "latter"):
-            pair = next(
-                (f for f in self.recent if f.subject is not None and f.others and f.sentence < self.sentence), None
-            )
-            pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
-            last = self.recent[0].subject if self.recent else None
             here = [entity for entity in self.named if entity is not besides]
             if len(here) > 1:  # 'between the mug and the bowl, but closer to the latter'
                 return here[-2 if word == "former" else -1]
-            if last is not None and not last.noun and len(last.members) > 1:
-                return last.members[0 if word == "former" else -1]
+            told = [f for f in self.recent if f.subject is not None]
+            pair = next((f for f in told if f.others), None)
+            for focus in told:
+                if focus.subject is not None and not focus.subject.noun and len(focus.subject.members) > 1:
+                    return focus.subject.members[0 if word == "former" else -1]
+                if focus.others and focus.sentence < self.sentence:
+                    pair = focus
+                    break
             return None if pair is None else pair.subject if word == "former" else pair.others[0]
         if word in ("one", "other"):
             return self._ellipsis(phrase, besides, relation)

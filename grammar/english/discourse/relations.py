@@ -110,6 +110,12 @@ class Relations(Mentions):
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
             return  # 'fold it into a rectangle'
+        if relation == "outside":
+            hollow = all(last_word(a.head) in VESSELS | HOLDERS for a in predicate.arguments)
+            if predicate.arguments and hollow and self.how.positive and not predicate.reversed:
+                self.how = replace(self.how, positive=False)  # 'outside the box' denies that it is inside
+                self._relate(subject, replace(predicate, relation="inside"), others)
+            return
         if relation in ("at", "on") and self._at_the_other(subject, predicate):
             return
         found: list[Entity | Region] = []
