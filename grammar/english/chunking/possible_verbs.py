@@ -55,7 +55,7 @@ def possible_verbs(chunks: list[Chunk], words: list[Word], nouns: KnownNouns) ->
                 told_apart = at == chunk.start + 2 and norms[chunk.start] == "the" and (
                     is_adjective(norms[at - 1]) or norms[at - 1] == "other"
                 )
-                told_apart = told_apart or norms[chunk.start : at] == ["the", "other", "one"]
+                told_apart = told_apart or norms[chunk.start : at] in (["the", "other", "one"], ["one"], ["another"])
                 third = form is not None and form.form == "s"  # 'the leftmost holds sand'
                 inner = before in ("WITH", "OF", "PREP") and form is not None and form.form == "s"
                 agrees = inner or _agrees(norms[at - 1], norm, form is not None and form.form, nouns)

@@ -38,7 +38,7 @@ from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tokens import DOUBT
-from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
+from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.nouns import (
     ABSTRACT,
@@ -46,6 +46,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     GENERAL,
     HOLDERS,
     PARTS,
+    PEOPLE,
     REMOVABLE,
     SURFACES,
     VIEWER_WORDS,
@@ -124,6 +125,7 @@ class Discourse(Statements):
             self.references.start, self.end = sentence.span
             self.references.lost = [problem.span for problem in sentence.misunderstood]
             self.condition = condition_of(sentence)
+            self.elsewhere = self._other_viewpoint(sentence)
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
             if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
                 self._ask_about(sentence.fragment)
@@ -136,6 +138,17 @@ class Discourse(Statements):
                     self._clause(part, number)
             self._focus_on_label(number)
         return self.drafts
+
+    def _other_viewpoint(self, sentence: Sentence) -> str | None:
+        """Return the words by which a sentence speaks from another place than the viewer's: *seen from the door*."""
+        at = None if sentence.viewpoint is None else sentence.viewpoint.at
+        if sentence.viewpoint is None or at is None or not at.head:
+            return None
+        owner = at.owner or at.of
+        here = owner is not None and owner.pronoun in VIEWER_WORDS and not owner.head
+        if here or last_word(at.head) in PEOPLE | {"viewer"}:
+            return None  # 'from my side of the table'
+        return " ".join(self.text[slice(*sentence.viewpoint.span)].strip(" ,").split())
 
     def _focus_on_label(self, number: int) -> None:
         """Let *it* in the next sentence mean the label of this one, as in *Spoon: a large one*."""
