@@ -431,6 +431,8 @@ class Discourse(Statements):
         if last_word(subject.head) in GENERAL and any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives):
             self._superlative_apposition(subject, predicates)
             return
+        if subject.owner is not None and subject.owner.pronoun == "it" and _is_put_beside(subject, predicates):
+            subject = replace(subject, owner=None, determiner="the")  # 'its lid lies next to it'
         entity = self._subject(subject, predicates)
         if entity is None:
             return
@@ -654,6 +656,14 @@ def _with_shared_surface(phrase: NounPhrase) -> NounPhrase:
     if not (shared and carried):
         return phrase
     return replace(phrase, members=tuple(replace(member, predicates=last.predicates) for member in phrase.members))
+
+
+def _is_put_beside(part: NounPhrase, predicates: tuple[Predicate, ...]) -> bool:
+    """Return True for a part that can be taken off, and that lies beside its whole."""
+    beside = DIRECTIONS | {"next_to", "near", "under"}
+    return part.head in REMOVABLE and any(
+        p.relation in beside and any(a.pronoun == "it" and not a.head for a in p.arguments) for p in predicates
+    )
 
 
 def _without_verb(phrase: NounPhrase) -> NounPhrase:

@@ -238,6 +238,8 @@ class Mentions(Drafting, ABC):
                     )
         for adjective in phrase.adjectives:
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+            if adjective.word in ("left", "right"):
+                name = f"{adjective.word}most"
             if new and adjective.degree is Degree.SUPERLATIVE and name is not None and not entity.members:
                 self._add(name, (entity,), (), how=replace(plain, span=phrase.span))
         if new and entity.members:

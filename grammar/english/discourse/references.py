@@ -499,31 +499,31 @@ class References:
         if phrase.determiner == "other" or phrase.pronoun == "other":
             left = [leaf for leaf in leaves if not leaf.is_picked]
             if phrase.plural and len(left) > 1 and len(left) >= (phrase.count or 0):  # 'the other two', 'the others'
-                return Entity("", members=[self._picked(leaf, phrase) for leaf in left[: phrase.count]])
+                return Entity("", members=[self.picked(leaf, phrase) for leaf in left[: phrase.count]])
             return left[0] if left else leaves[-1]
         for predicate in phrase.predicates:  # 'the second fork from the left', with the leaves from left to right
             rank = predicate.value.rank if predicate.relation == "ordinal" and predicate.value is not None else None
             if rank is not None and 0 < abs(rank) <= len(leaves):
                 from_left = (rank > 0) == (predicate.part not in ("right", "back", "far"))
-                return self._picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
+                return self.picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
         owner = phrase.owner.head if phrase.owner is not None else ""
         if owner and not phrase.plural and phrase.head:  # 'the passenger's seat' after 'the seats'
             owned = next((leaf for leaf in leaves if ("picked", f"of {owner}") in leaf.adjectives), None)
             owned = owned or next((leaf for leaf in leaves if not leaf.is_picked), None)
             if owned is not None:
                 owned.adjectives.add(("picked", f"of {owner}"))
-                return self._picked(owned, phrase)
+                return self.picked(owned, phrase)
         apart = any(p.degree is Degree.SUPERLATIVE and p.arguments for p in phrase.predicates)
         free = [leaf for leaf in leaves if not leaf.is_picked]
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
-            return self._picked(free[0], phrase)  # 'the post nearest the door'
+            return self.picked(free[0], phrase)  # 'the post nearest the door'
         for adjective in phrase.adjectives:
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
-                return self._picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
+                return self.picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
             tag = _tag(adjective)
             for leaf in leaves:
                 if (adjective.dimension, adjective.word) in leaf.adjectives or ("picked", tag) in leaf.adjectives:
-                    return self._picked(leaf, phrase)
+                    return self.picked(leaf, phrase)
             free = [leaf for leaf in leaves if not leaf.is_picked]
             if not free or adjective.dimension == "state":
                 continue
@@ -532,7 +532,7 @@ class References:
             if adjective.degree is Degree.PLAIN and adjective.dimension != "position":
                 leaf.adjectives.add((adjective.dimension, adjective.word))
             self._compare(adjective, leaf, leaves, phrase)
-            return self._picked(leaf, phrase)
+            return self.picked(leaf, phrase)
         return None
 
     def _compare(self, adjective: Adjective, leaf: Entity, leaves: list[Entity], phrase: NounPhrase) -> None:
@@ -550,7 +550,21 @@ class References:
                 if other is not leaf:
                     self.compare(relation, leaf, other, phrase)
 
-    def _picked(self, leaf: Entity, phrase: NounPhrase) -> Entity:
+    def picked(self, leaf: Entity, phrase: NounPhrase) -> Entity:
+        """Return a member of a group, marked as told apart from the others by a phrase.
+
+        Parameters
+        ----------
+        leaf
+            Member of a group.
+        phrase
+            Noun phrase that stands for it.
+
+        Returns
+        -------
+        Entity
+            The member.
+        """
         if not leaf.is_picked:
             leaf.adjectives.add(("picked", "named"))
         leaf.mention(self.words(phrase))
@@ -594,13 +608,15 @@ class References:
         word = phrase.pronoun or ""
         if word in VIEWER_WORDS:
             return self.viewer
+        if word == "both" and phrase.of is not None and phrase.of.pronoun == "they" and not phrase.of.head:
+            phrase = replace(phrase, of=None)
         if phrase.of is not None and word not in ("it", "they"):
             group = self.find(phrase.of, relation, besides)
             if group is None or word in ("all", "both", "each", "everything"):
                 return group
             if word == "one" and group.members and not phrase.plural:  # 'one of the cups', which another one is not
                 free = (leaf for leaf in group.leaves() if not leaf.is_picked)
-                return self._picked(self.member(group, phrase) or next(free, None) or next(group.leaves()), phrase)
+                return self.picked(self.member(group, phrase) or next(free, None) or next(group.leaves()), phrase)
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("it", "they") and self._is_lost(phrase):
             return None
@@ -691,6 +707,9 @@ class References:
             contrasted = self._contrasted(phrase)
             if contrasted is not None:
                 return contrasted
+        bare = phrase.determiner is None and phrase.pronoun is None and phrase.count is None and not phrase.plural
+        if group is None and bare and coloured and relation is not None:
+            return None  # 'on black's right'
         if group is None and phrase.adjectives:
             colours = {a.word for a in phrase.adjectives if a.dimension == "colour"}
             if colours and (noun := self._last_noun()):  # the blue one, beside the red box
@@ -743,7 +762,7 @@ class References:
         listed = before is not None and (labelled or before.subject in leaves)
         if further and group is not None and listed and free and not ranks:
             # 'two cups: a red one on the box, a blue one behind the jar'
-            return self._picked(self.member(group, phrase) or free[0], phrase)
+            return self.picked(self.member(group, phrase) or free[0], phrase)
         if further and group is not None and group.noun and phrase.of is None:
             return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
         if (further or (second and group is None)) and phrase.of is None and (last := self._last_thing(besides)):
@@ -762,12 +781,12 @@ class References:
         some = phrase.of is not None or (phrase.determiner is None and relation is None)
         if some and 1 < (phrase.count or 0) <= group.size and not phrase.adjectives:
             chosen = [*free, *(leaf for leaf in leaves if leaf not in free)][: phrase.count]
-            return Entity("", members=[self._picked(leaf, phrase) for leaf in chosen])  # 'three of the five forks'
+            return Entity("", members=[self.picked(leaf, phrase) for leaf in chosen])  # 'three of the five forks'
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
-            found = self._picked(free[0], phrase) if free else None
+            found = self.picked(free[0], phrase) if free else None
         if found is not None:
-            self._picked(found, phrase)
+            self.picked(found, phrase)
         return found
 
     def _last_thing(self, besides: Entity | None) -> Entity | None:

@@ -110,6 +110,9 @@ class Relations(Mentions):
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
             return  # 'fold it into a rectangle'
+        degree = self.text[: predicate.span[0]].casefold().split()[-1:]
+        if relation in ("near", "far") and degree in (["equally"], ["as"]):
+            return  # 'equally far from the cross' compares, and says no distance
         if relation == "outside":
             hollow = all(last_word(a.head) in VESSELS | HOLDERS for a in predicate.arguments)
             if predicate.arguments and hollow and self.how.positive and not predicate.reversed:

@@ -299,3 +299,44 @@ def test_sides_from_another_viewpoint_are_conditional(text: str) -> None:
 @pytest.mark.parametrize("frame", ["From where I sit", "From my side of the table", "As you look at it"])
 def test_sides_from_the_viewer_are_asserted(frame: str) -> None:
     assert asserted(f"{frame}, the lamp is left of the box.") == {"left(lamp, box)"}
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        ("There are two lamps: one behind the vase and one in front of it.",
+         {"count(lamp_1, lamp_2, '2')", "behind(lamp_1, vase)", "in_front(lamp_2, vase)"}),
+        ("Two lamps flank the bed: one left of the vase, the other right of it.",
+         {"count(lamp_1, lamp_2, '2')", "each_side(lamp_1, bed)", "each_side(lamp_2, bed)", "left(lamp_1, vase)",
+          "right(lamp_2, vase)"}),
+        ("The salt is next to the oil, both of them behind the pan.",
+         {"next_to(salt, oil)", "behind(salt, pan)", "behind(oil, pan)"}),
+        ("A jar is behind the pan and its lid lies next to it.", {"behind(jar, pan)", "next_to(lid, jar)"}),
+        ("The rightmost jar is behind the pan.", {"rightmost(jar)", "behind(jar, pan)"}),
+        ("The pan is behind the jar, wider than everything else.", {"behind(pan, jar)", "widest(pan)"}),
+        ("The jar is taller than all the others.", {"tallest(jar)"}),
+        ("The jar is as far from the pan as the lid. The lid is on the mat.", {"on(lid, mat)"}),
+        ("The clock is on black's right. The lid is on the mat.", {"on(lid, mat)"}),
+    ],
+)  # fmt: skip
+def test_members_told_apart_and_compared(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+def test_a_sentence_without_facts_has_a_reason() -> None:
+    found = reading("The cup is on the mat. The jar is heavier than the box.")
+    (problem,) = found.sentences[1].problems
+    assert "no relation or property that a fact can state" in problem.message
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("Das Messer liegt rechts. The cup is on the mat.", "write it in English"),
+        ("The cup is on the mat, and half past.", None),
+    ],
+)
+def test_instructions_are_not_quoted(text: str, hint: str | None) -> None:
+    hints = [problem.hint for sentence in reading(text).sentences for problem in sentence.problems]
+    assert all(one is None or not one.startswith("write 'write") for one in hints)
+    assert hint is None or hint in hints
