@@ -125,3 +125,9 @@ def test_the_surface_of_the_header_is_not_an_object() -> None:
     ]
     with pytest.raises(ScriptError, match="is the surface"):
         parse_script("layout on tray; cup left of tray")
+
+
+def test_in_is_a_place_before_a_region_and_a_relation_before_a_name() -> None:
+    script = parse_script("pen in cup; lamp in the middle; cup_1, cup_2 in a row; lid not in box")
+    assert [str(fact) for fact in script.facts] == ["inside(pen, cup)", "not inside(lid, box)"]
+    assert [str(claim) for claim in script.claims] == ["middle(lamp)", "row(cup_1, cup_2)"]
