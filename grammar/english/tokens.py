@@ -454,7 +454,9 @@ def _count_halves(words: list[Word]) -> None:
         if norms[:3] == ["half", "a", "dozen"]:
             words[i].norm, words[i].end = "6", words[i + 2].end
             del words[i + 1 : i + 3]
-        elif len(norms) == 4 and norms[0] == "half" and norms[1] == "of" and norms[2] in DETERMINERS | POSSESSIVES.keys():
+        elif (
+            len(norms) == 4 and norms[0] == "half" and norms[1] == "of" and norms[2] in DETERMINERS | POSSESSIVES.keys()
+        ):
             number = NUMBERS.get(norms[3]) or (int(norms[3]) if norms[3].isdecimal() else 1)
             if number % 2 == 0:
                 words[i].norm = str(number // 2)

@@ -223,7 +223,11 @@ def _subject_follows(
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
     told_apart = any(kind == "NP" and chunks[k].value.pronoun == "one" for k, kind in enumerate(types[start:at], start))
-    if told_apart and chunks[end].value.pronoun == "other" and types[end + 1 : end + 2] in (["PREP"], ["ADV"], ["PART"]):
+    if (
+        told_apart
+        and chunks[end].value.pronoun == "other"
+        and types[end + 1 : end + 2] in (["PREP"], ["ADV"], ["PART"])
+    ):
         return True  # 'one left of the cross, the other right of it'
     if _has_beside_it(chunks, types, start, at, end):
         return False

@@ -777,7 +777,9 @@ class References:
                 return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
             return self._another_one(phrase, besides, relation)
         if ranks and min(ranks) > group.size and group.noun and phrase.of is None:
-            return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'the third' after two of them
+            return self._new(
+                replace(phrase, head=group.noun, pronoun=None), group.role
+            )  # 'the third' after two of them
         some = phrase.of is not None or (phrase.determiner is None and relation is None)
         if some and 1 < (phrase.count or 0) <= group.size and not phrase.adjectives:
             chosen = [*free, *(leaf for leaf in leaves if leaf not in free)][: phrase.count]
