@@ -463,7 +463,7 @@ def _count_halves(words: list[Word]) -> None:
 
 
 def _without_floating_each(words: list[Word]) -> None:
-    """Leave out *each* after the things that it is about: *the cups each have a spoon*, *they stand on a saucer each*."""
+    """Leave out *each* after the things that it is about: *the cups each have a lid*, *they have a lid each*."""
     for i in range(len(words) - 1, 1, -1):
         before, after = words[i - 1], words[i + 1].norm if i + 1 < len(words) else "."
         if words[i].norm != "each" or not before.is_word:

@@ -370,9 +370,8 @@ class Discourse(Statements):
         unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
         if clause.mood is Mood.COMMAND:
             unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
-        start, end = clause.span
-        bounded = any(start < match.end() < end for match in AT_MOST.finditer(self.text, self.references.start, end))
-        unreal = unreal or bounded
+        bounds = AT_MOST.finditer(self.text, self.references.start, clause.span[1])
+        unreal = unreal or next((match for match in bounds if match.end() > clause.span[0]), None)
         if (unreal and positive) or SELDOM.search(self.text[slice(*clause.span)]):
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         if not clause.predicates and not clause.choices and not clause.existential:
@@ -668,7 +667,7 @@ def _is_put_beside(part: NounPhrase, predicates: tuple[Predicate, ...]) -> bool:
 
 def _without_verb(phrase: NounPhrase) -> NounPhrase:
     """Return *the kettle boils*, all of a condition, as the kettle: the last word is its verb."""
-    noun, _, verb = phrase.head.rpartition(" ")
+    noun = phrase.head.rpartition(" ")[0]
     agrees = bool(noun) and phrase.plural and phrase.count is None and phrase.determiner in ("the", "a", "an")
     return replace(phrase, head=noun, plural=False) if agrees and not phrase.members else phrase
 

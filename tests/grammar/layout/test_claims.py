@@ -127,7 +127,7 @@ def test_the_surface_of_the_header_is_not_an_object() -> None:
         parse_script("layout on tray; cup left of tray")
 
 
-def test_in_is_a_place_before_a_region_and_a_relation_before_a_name() -> None:
+def test_in_before_a_region_is_a_place() -> None:
     script = parse_script("pen in cup; lamp in the middle; cup_1, cup_2 in a row; lid not in box")
     assert [str(fact) for fact in script.facts] == ["inside(pen, cup)", "not inside(lid, box)"]
     assert [str(claim) for claim in script.claims] == ["middle(lamp)", "row(cup_1, cup_2)"]
