@@ -272,7 +272,8 @@ class References:
             entity.aliases.add(amount[0])
             self.renamed.append(entity)
         lump = next((word for word in words if word in SINGLE_PLURALS and is_one_thing(written)), None)
-        if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
+        paired = stem in PAIRED and (phrase.determiner is not None or phrase.owner is not None)
+        if count is None and phrase.plural and lump is None and (paired or phrase.determiner == "both"):
             count = 2
         if phrase.of is not None and phrase.of.plural and stem in GROUPS:
             entity.aliases.add(phrase.of.head)

@@ -25,8 +25,11 @@ from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
 
-AT_CORNER = re.compile(r"(?:at|in|on)\s+the\s+[\w-]+\s+(?:left|right)", re.IGNORECASE)
-"""Corner as a place, and not as a direction: *at the upper left*, not *to the upper left*."""
+AT_CORNER = re.compile(
+    r"(?:\b(?:at|in|on)\s+the\s+[\w-]+\s+|^(?:top|upper|bottom|lower)[\s-]+)(?:left|right)(?:\s+(?:position|spot|place))?$",
+    re.IGNORECASE,
+)
+"""Corner as a place, and not as a direction: *at the upper left* and *top left*, not *to the upper left*."""
 
 MAX_WORDS_AFTER = 3
 """Number of words between a relative clause and the pronoun that stands for its last thing."""
@@ -439,7 +442,7 @@ class Relations(Mentions):
         if last is not None and near and not last.how.guesses & UNANCHORED:
             self._add(predicate.relation, (subject,), last.arguments, value=last.value)
             return True
-        if not AT_CORNER.match(self.text[slice(*predicate.span)]):
+        if not AT_CORNER.search(self.text[slice(*predicate.span)]):
             return False
         self._add("part", (subject,), (), value=predicate.relation.replace("_", " "))
         return True
