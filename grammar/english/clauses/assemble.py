@@ -233,8 +233,9 @@ class Assembly:
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
             one = subject.phrase.pronoun == "one" and bool(subject.phrase.adjectives)
-            if (subject.phrase.head or one) and not letting:
-                named = subject.phrase.determiner == "the" or subject.phrase.owner is not None
+            if (subject.phrase.head or subject.phrase.members or one) and not letting:
+                first, *_ = subject.phrase.members or (subject.phrase,)
+                named = first.determiner == "the" or first.owner is not None
                 handled = self.opens_list or (named and verb.group.positive)
                 mood = Mood.COMMAND if handled else mood  # 'mind the saw: it …', 'wash the jug. it …'
                 self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
@@ -738,7 +739,8 @@ class Assembly:
             clause = replace(clause, modal="may")
             if self.clauses[-1].modal in (None, "can"):
                 self.clauses[-1] = replace(self.clauses[-1], modal="may")
-        handled = clause.mood is Mood.COMMAND and clause.subject is not None and bool(clause.subject.head)
+        named = clause.subject is not None and bool(clause.subject.head or clause.subject.members)
+        handled = clause.mood is Mood.COMMAND and named
         placed = clause.subject is not None and bool(clause.subject.predicates)
         if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
             self.clauses.append(replace(clause, predicates=tuple(kept), guesses=self.guesses | clause.guesses))

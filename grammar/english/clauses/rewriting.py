@@ -85,7 +85,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
-        _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without_openings, _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
@@ -356,6 +356,29 @@ def _means(chunks: list[Chunk], at: int) -> _Run | None:
     end = end_before(chunks, at + 1, _BREAKS)
     _leave_out(chunks[at:end], "how something is done is not where it is")
     return end, None
+
+
+def _without_openings(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out what opens a statement: *that means* before a clause, *next is* before the next thing."""
+    first = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    if len(chunks) < first + 3 or chunks[first + 2].type != "NP":
+        return chunks
+    opening, verb, thing = chunks[first : first + 3]
+    group = verb.value if isinstance(verb.value, VerbGroup) else None
+    if group is None or not group.positive or group.past:
+        return chunks
+    pointed = opening.type == "NP" and opening.value.pronoun in ("this", "that", "it") and not opening.value.head
+    clause = type_at(chunks, first + 3) in FINITE
+    if pointed and group.lemma == "mean" and group.modal is None and clause:
+        return chunks[first + 2 :]
+    adjectives = opening.value if opening.type == "ADJP" else ()
+    word = opening.value.head if opening.type == "NP" else opening.value
+    word = adjectives[0].word if len(adjectives) == 1 else word
+    if word != "next" or opening.end != opening.start + 1 or group.lemma not in ("be", "come"):
+        return chunks
+    placed = any(chunk.type in _PREDICATES for chunk in chunks[first + 3 :])
+    command = VerbGroup("place", "posture", "base") if placed else VerbGroup("take", "other", "base")
+    return [Chunk("PUT" if placed else "DO", opening.start, verb.end, command, opening.span), *chunks[first + 2 :]]
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
