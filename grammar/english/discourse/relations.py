@@ -463,6 +463,11 @@ class Relations(Mentions):
         if contrasted is not None:
             self._pair(subject, predicate.relation, contrasted, False)
             return
+        across = self._side_of(subject, predicate)
+        if across is not None:
+            self.how = self._guessed(Guess.OF_THE_LAST)
+            self._pair(subject, predicate.relation, across, False)
+            return
         beside = self.drafts[-1] if self.drafts else None
         person = beside is not None and not beside.arguments and beside.value in PEOPLE and beside.metres is None
         turned = person and beside is not None and beside.relation == OPPOSITES.get(predicate.relation)
@@ -513,6 +518,18 @@ class Relations(Mentions):
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
             self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _side_of(self, subject: Entity, predicate: Predicate) -> Entity | None:
+        """Return the thing of which *on the right* is the other side: *A on the left of the plate, B on the right*."""
+        opposite = OPPOSITES.get(predicate.relation)
+        if predicate.relation not in ("left", "right") or predicate.part is None or not self.how.positive:
+            return None
+        here = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation in ("left", "right")]
+        last = here[-1] if here else None
+        if last is None or last.relation != opposite or len(last.arguments) != 1 or not last.how.positive:
+            return None
+        thing = last.arguments[0]
+        return thing if thing.role is Role.THING and subject not in (*last.subjects, thing) else None
 
     def _of_the_other(self, subject: Entity, relation: str) -> Entity | None:
         """Return what the other one is on the other side of: *the box left of the desk … the one to the right*."""
