@@ -44,6 +44,10 @@ def _idioms() -> dict[str, list[tuple[str, ...]]]:
     return found
 
 
+MAX_JUDGEMENT = 8
+"""Number of words before an infinitive in which *it is* can begin a judgement of it."""
+
+
 class FixedPhraseChunker(JointChunker):
     """Finder of fixed phrases."""
 
@@ -284,12 +288,16 @@ class FixedPhraseChunker(JointChunker):
             and (
                 self.nouns.is_determiner(at + 2)
                 or self.norms[at + 2] in ("it", "them")
-                or (self.norms[at - 1] in _JUDGEMENTS and self.nouns.is_noun(at + 2))
+                or ((self.norms[at - 1] in _JUDGEMENTS or self._judges(at)) and self.nouns.is_noun(at + 2))
             )
         ):
-            denied = any(word in NEGATIONS or word in _FORBIDDING for word in self.norms[:at])
-            used = "used" in self.norms[:at]  # 'it may be used to cut bread or to spread butter on it'
-            modal = None if denied or (self._is_told_to(at) and not used) else "might"
+            before = self.norms[:at]
+            spared = not _NECESSARY.isdisjoint(before)  # 'it is not necessary to put it there'
+            denied = any(word in NEGATIONS or word in _FORBIDDING for word in before)
+            used = "used" in before  # 'it may be used to cut bread or to spread butter on it'
+            told = denied or (self._is_told_to(at) and not used)
+            modal = None if told and not (denied and spared) else "might"
+            denied = denied and not spared
             return Chunk(
                 "PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", modal, positive=not denied)
             )
@@ -444,6 +452,11 @@ class FixedPhraseChunker(JointChunker):
         group = VerbGroup("think", "other", "base", positive=positive, adverbs=("probably",))
         return (i, group) if self.nouns.starts(i) else None
 
+    def _judges(self, at: int) -> bool:
+        """Return True if the words before this one are an impersonal judgement: *it is no longer good form*."""
+        before = range(max(0, at - MAX_JUDGEMENT), at - 1)
+        return any(self.norms[k] == "it" and self.norms[k + 1] in IS_FORMS for k in before)
+
     def _impersonal(self, at: int) -> tuple[int, VerbGroup] | None:
         """Return the end and the verb of *it seems that*, *it could be that*, *it isn't true that*."""
         i, positive, modal, adverbs = at + 1, True, None, []
@@ -583,6 +596,9 @@ _JUDGEMENTS = word_set(
     "true clear certain important essential vital good bad nice best better the case fact sure acceptable fine polite"
     " proper correct customary usual common traditional advisable idea convenient useful helpful wise sensible"
 )
+
+_NECESSARY = word_set("necessary required needed essential obligatory mandatory compulsory")
+"""Judgements whose denial leaves a choice."""
 
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
 

@@ -52,7 +52,7 @@ FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire"
 
 NOT_STATES = word_set(
     "need turn roll lay put place set leave open water know call referred name mean work pick choose use allow require"
-    " include exclude recommend suggest advise ask forget remember consider regard offer give hand drink eat keep say"
+    " include exclude recommended dedicated devoted recommend suggest advise ask forget remember consider regard offer give hand drink eat keep say"
 )
 """Verbs whose participles tell no state of a thing."""
 
