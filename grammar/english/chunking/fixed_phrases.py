@@ -526,6 +526,24 @@ class FixedPhraseChunker(JointChunker):
             return i + (self.norms[i] in ("for", "on", "out", "up"))
         return i if self.norms[i - 1] in ("to", "go") and i > at + 2 else None
 
+    def _use(self, at: int) -> int | None:
+        """Return the end of a relative clause that tells who uses a thing, and how often: *the cups you use daily*."""
+        i = at + (self.norms[at] in ("that", "which"))
+        if self._previous() != "NP" or self.norms[i] not in _USERS:
+            return None
+        i += 1
+        while self.norms[i] in ADVERBS | _FREQUENCIES or self.norms[i] in ("'ll", "will", "can", "do", "don't", "not"):
+            i += 1
+        form = self._verbs.get(self.norms[i])
+        if form is None or form.lemma not in _USING:
+            return None
+        i += 1 + ((form.lemma, self.norms[i + 1]) == ("reach", "for"))
+        while self.norms[i] in _FREQUENCIES or self.norms[i : i + 2] in _FREQUENT_PAIRS:
+            i += 1 if self.norms[i] in _FREQUENCIES else 2
+        follows = self._verbs.get(self.norms[i])
+        said = self.norms[i] in IS_FORMS | MODALS.keys() or (follows is not None and follows.form in ("base", "s"))
+        return i if said or self.norms[i] in CLAUSE_ENDS | prepositions().keys() else None
+
     def _chooses(self, at: int) -> bool:
         """Return True if one of several things is meant: *there are six benches, and you want the leftmost one*."""
         return self.norms[at] == "the" and any(chunk.type == "THERE" for chunk in self.chunks)
@@ -611,6 +629,17 @@ _GOVERNORS = word_set(
     " is are step idea convenient wise sensible"
 )
 """Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
+
+_USERS = word_set("you we they i people guests everyone")
+"""Subjects of relative clauses that tell who uses a thing."""
+_USING = word_set("use need want like reach love eat drink wear own buy enjoy")
+_FREQUENCIES = word_set(
+    "most often daily frequently regularly rarely seldom occasionally sometimes weekly less least more always usually"
+    " later soon first"
+)
+_FREQUENT_PAIRS = (["every", "day"], ["every", "week"], ["all", "day"], ["each", "day"], ["the", "most"], ["a", "lot"],
+                   ["right", "away"], ["the", "least"], ["each", "morning"], ["every", "morning"])  # fmt: skip
+"""Words that tell how often a thing is used, which are not about its place."""
 
 _UNDER_OR_BEHIND = frozenset({"behind", "under", "underneath", "beneath", "between", "beside", "below", "next"})
 

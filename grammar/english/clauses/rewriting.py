@@ -85,7 +85,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
-        _without_openings, _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without_openings, _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside), _without(_restriction_of_object),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
@@ -549,6 +549,19 @@ def _relative_aside(chunks: list[Chunk], at: int) -> _Run | None:
         return None
     _leave_out(chunks[at + 1 : end], "this clause does not say where something is")
     return end + 1 if goes_on else end, None
+
+
+def _restriction_of_object(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find which things a command is about, before their place: *put the fruits that spoil quickly on the shelf*."""
+    if type_at(chunks, at) != "REL" or [type_at(chunks, k) for k in (at - 2, at - 1)] != ["PUT", "NP"]:
+        return None
+    verb = chunks[at + 1] if type_at(chunks, at + 1) == "VERB" else None
+    group = verb.value if verb is not None else None
+    placeless = ("other", "unknown", "transitive")
+    if not isinstance(group, VerbGroup) or group.kind not in placeless or group.lemma in TRANSITIVE_RELATIONS:
+        return None
+    end = next((k for k in range(at + 2, len(chunks)) if chunks[k].type != "ADVERB"), len(chunks))
+    return (end, None) if type_at(chunks, end) in ("PREP", "ADV") else None
 
 
 def _leave_out(chunks: list[Chunk], reason: str) -> None:
