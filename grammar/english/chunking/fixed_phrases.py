@@ -542,7 +542,8 @@ class FixedPhraseChunker(JointChunker):
             i += 1 if self.norms[i] in _FREQUENCIES else 2
         follows = self._verbs.get(self.norms[i])
         said = self.norms[i] in IS_FORMS | MODALS.keys() or (follows is not None and follows.form in ("base", "s"))
-        return i if said or self.norms[i] in CLAUSE_ENDS | prepositions().keys() else None
+        ends = self.norms[i] in CLAUSE_ENDS | prepositions().keys() and self.norms[i] != "to"
+        return i if said or ends else None
 
     def _chooses(self, at: int) -> bool:
         """Return True if one of several things is meant: *there are six benches, and you want the leftmost one*."""
