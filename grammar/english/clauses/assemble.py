@@ -779,10 +779,23 @@ def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple
     for predicate in predicates:
         phrase = predicate.arguments[0] if predicate.relation == "with" and predicate.arguments else None
         if phrase is not None and phrase.predicates and predicate.positive and predicate.subject_part is None:
-            absolute.append((replace(phrase, predicates=()), phrase.predicates))
+            absolute.append((replace(phrase, predicates=()), _with_own_aims(phrase.predicates)))
         else:
             kept.append(predicate)
     return kept, absolute
+
+
+def _with_own_aims(predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+    """Return *on top of the fork facing left*, which is said of a spoon, with the aim as that of the spoon."""
+    last = predicates[-1]
+    if len(last.arguments) != 1 or last.relation not in ("on", "above", "next_to", "under") or last.reversed:
+        return predicates
+    thing = last.arguments[0]
+    aims = tuple(p for p in thing.predicates if p.relation in ("facing", "pointing") and not p.arguments)
+    if not aims or len(aims) != len(thing.predicates) or thing.determiner != "the":
+        return predicates
+    bare = replace(thing, predicates=(), span=(thing.span[0], max(thing.span[0], aims[0].span[0])))
+    return (*predicates[:-1], replace(last, arguments=(bare,)), *aims)
 
 
 def _looking(built: Built, start: int) -> tuple[Built, Viewpoint | None]:

@@ -1184,6 +1184,8 @@ def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
             at -= 2
         place = found[at].value.preposition.relation if type_at(found, at) == "PREP" else ""
         of_place = place in ("on", "inside") and not _names_place(found, at + 1)  # 'on the shelf facing the door'
+        accompanied = [type_at(found, at - 2), type_at(found, at - 1)] == ["WITH", "NP"]  # whose aim this is
+        aims = aims and not accompanied
         if put and place and type_at(found, len(found) - 1) == "NP" and (aims or (not of_place and (turned or again))):
             found.append(put_in("COMMA", chunk))
         found.append(chunk)

@@ -36,7 +36,7 @@ _ACTS = word_set(
     " order sequence priority preference need want wish desire demand use usage reach ease convenience help support"
     " advice guidance reminder warning caution care attention focus emphasis effort work play fun rest sleep exercise"
     " ritual ceremony celebration symbolism representation worship prayer blessing creation impact influence"
-    " observation experience event occasion matter fact detail information"
+    " observation experience event occasion matter fact detail information word"
 )
 _TIMES = word_set(
     "time moment second minute hour day night morning afternoon evening week weekend month season year century age"
