@@ -104,6 +104,7 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
     if not rivals:
         return first
     kept, ours = first, _Propositions.by(first)
+    rejected = ours.all
     guessed = any(clause.guesses for clause in first.clauses) or bool(first.guesses)
     for theirs, other, _ in rivals:
         simpler = (theirs.odd, theirs.number) < (ours.odd, ours.number) and theirs.number <= ours.number
@@ -111,6 +112,8 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
             kept, ours = other, theirs
     contested: set[Span] = set()
     for theirs, _, in_conjunction in rivals:
+        if kept is not first and theirs.all == rejected:
+            continue  # as the reading that was replaced
         if (in_conjunction or theirs.number < ours.number) and theirs.can_replace(ours):
             contested |= {span for span, proposition in ours.spans if not theirs.has(proposition)}
     return replace(kept, contested=frozenset(contested))
