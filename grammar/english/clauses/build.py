@@ -1008,9 +1008,7 @@ def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tu
         before = made[i - 1][1][0] if i and made[i - 1][1] and link in ("and", ",", "or") else None
         if after is not None and after.arguments and after.relation in _SHARING | _ALIGNING | _SHARED_FROM:
             made[i] = (link, (replace(this, arguments=after.arguments),))
-        elif (
-            before is not None and len(before.arguments) == 1 and before.relation in _SHARING and not before.reversed
-        ):
+        elif before is not None and len(before.arguments) == 1 and before.relation in _SHARING and not before.reversed:
             made[i] = (link, (replace(this, arguments=before.arguments),))
     return made
 
