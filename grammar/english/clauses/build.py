@@ -718,8 +718,10 @@ def flat(verb: Verb) -> list[Predicate]:
     """
     found: list[Predicate] = []
     contrasted: list[Predicate] = []
+    after_but = False
     for part in verb.predications:
-        if part.contrast:
+        after_but = after_but or part.contrast  # also 'behind the jar' in 'not on it but under it, behind the jar'
+        if after_but and not part.choice:
             contrasted += part.predicates
         elif not part.choice:
             found += part.predicates
