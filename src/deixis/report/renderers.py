@@ -210,6 +210,29 @@ RENDERERS = {
         "report.reasoning.time:chronology_lines",
         "report.reasoning.time:chronology_rows",
     ),
+    "Figure6": Renderer(
+        "experiments.figure6:figure6_to_dict",
+        "experiments.figure6:figure6_lines",
+        "experiments.figure6:figure6_rows",
+        "experiments.figure6:figure6_figure",
+    ),
+    "Scoreboard": Renderer(
+        "experiments.scoreboard.report:to_dict",
+        "experiments.scoreboard.report:lines",
+        "experiments.scoreboard.report:rows",
+        "experiments.scoreboard.plot:scoreboard_figure",
+    ),
+    "OpenEnded": Renderer(
+        "experiments.open_ended.report:to_dict",
+        "experiments.open_ended.report:lines",
+        "experiments.open_ended.report:rows",
+        "experiments.open_ended.plot:open_ended_figure",
+    ),
+    "Apprentice": Renderer(
+        "experiments.apprentice.report:to_dict",
+        "experiments.apprentice.report:lines",
+        "experiments.apprentice.report:rows",
+    ),
     "Related": Renderer(
         "report.scenes.relate:related_to_dict", "report.scenes.relate:pair_lines", "report.scenes.relate:related_rows"
     ),
