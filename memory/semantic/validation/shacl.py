@@ -177,7 +177,9 @@ def report_turtle(report: rdflib.Graph) -> str:
         if not isinstance(node, rdflib.BNode):
             return node.n3()
         if node not in known and node not in above:
-            inside = ((predicate.n3(), content(value, (*above, node))) for predicate, value in report.predicate_objects(node))
+            inside = (
+                (predicate.n3(), content(value, (*above, node))) for predicate, value in report.predicate_objects(node)
+            )
             known[node] = str(sorted(inside))
         return known.get(node, "")
 

@@ -140,6 +140,11 @@ RENDERERS = {
         "report.descriptions.relation:learned_words_lines",
         "report.descriptions.relation:learned_words_rows",
     ),
+    "Meaning": Renderer(
+        "report.descriptions.relation:meaning_to_dict",
+        "report.descriptions.relation:meaning_lines",
+        "report.descriptions.relation:meaning_rows",
+    ),
     "LearnedReference": Renderer(
         "report.descriptions.relation:learned_reference_to_dict",
         "report.descriptions.relation:learned_reference_lines",
