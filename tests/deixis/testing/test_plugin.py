@@ -75,6 +75,12 @@ def test_expectations_have_the_lines_of_the_file() -> None:
     assert found[0] == Expectation(6, "consistent")
 
 
+def test_an_expectation_may_follow_the_word_expect() -> None:
+    text = "fork left of plate\n# expect: consistent\n#   follows left(fork, plate)\n"
+    expected = [Expectation(2, "consistent"), Expectation(3, "follows left(fork, plate)")]
+    assert list(expectations_in(text, "dinner.layout")) == expected
+
+
 @pytest.mark.parametrize(
     ("block", "message"),
     [
