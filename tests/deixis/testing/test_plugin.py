@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 
+import numpy  # noqa: F401  (pytester forgets the modules of a run, and NumPy cannot be loaded twice)
 import pytest
 
 from deixis.errors import DeixisError
