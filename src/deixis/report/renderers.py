@@ -58,6 +58,7 @@ RENDERERS = {
         "report.descriptions.refer:reference_to_dict",
         "report.descriptions.refer:reference_lines",
         "report.descriptions.refer:reference_rows",
+        "plots.grounding:reference_figure",
     ),
     "Check": Renderer(
         "report.json_answers:check_to_dict",
@@ -128,6 +129,7 @@ RENDERERS = {
         "report.grounding.retrieve:retrieval_to_dict",
         "report.grounding.retrieve:retrieval_lines",
         "report.knowledge.rows:retrieval_rows",
+        "plots.charts:retrieval_figure",
     ),
     "Learned": Renderer(
         "report.json_answers:learned_to_dict",
@@ -172,6 +174,7 @@ RENDERERS = {
         "report.scenes.track:tracking_to_dict",
         "report.scenes.track:tracking_lines",
         "report.scenes.track:tracking_rows",
+        "plots.seen:tracking_figure",
     ),
     "Taught": Renderer("report.scenes.seen:taught_to_dict", "report.scenes.seen:taught_lines"),
     "LayoutConcept": Renderer(
@@ -214,6 +217,7 @@ RENDERERS = {
         "report.reasoning.time:chronology_to_dict",
         "report.reasoning.time:chronology_lines",
         "report.reasoning.time:chronology_rows",
+        "plots.charts:chronology_figure",
     ),
     "Figure6": Renderer(
         "experiments.figure6:figure6_to_dict",
