@@ -207,7 +207,7 @@ def test_times_without_an_end_reach_the_edge_of_the_chart(answers: dict[str, Ans
     axes = answers["Chronology"].plot().axes[0]
     ends = [bar.get_x() + bar.get_width() for bar in axes.patches]
     assert max(ends) == pytest.approx(axes.get_xlim()[1])
-    assert [label.get_text() for label in axes.get_yticklabels()][0] == "fetch: fetches(robot, cup)"
+    assert axes.get_yticklabels()[0].get_text() == "fetch: fetches(robot, cup)"
 
 
 def test_answers_with_nothing_to_draw_say_so() -> None:

@@ -156,8 +156,8 @@ def quiet() -> Iterator[None]:
 def report_turtle(report: rdflib.Graph) -> str:
     """Return a report as Turtle in an order that depends on its content only.
 
-    rdflib orders blank nodes by their random names; they are named anew in the order of what they say. The canonical
-    graph of rdflib gives the same order, but takes minutes for a few hundred results.
+    rdflib orders blank nodes by their random names; they are renamed in the order of what they say. The canonical
+    graph of rdflib would do too, but it takes minutes for a few hundred results.
 
     Parameters
     ----------
@@ -187,7 +187,9 @@ def report_turtle(report: rdflib.Graph) -> str:
         return content(node), sorted(content(subject) for subject in report.subjects(None, node))
 
     nodes = {node for node in report.all_nodes() if isinstance(node, rdflib.BNode)}
-    names = {node: rdflib.BNode(f"b{number:06}") for number, node in enumerate(sorted(nodes, key=place))}
+    names: dict[rdflib.term.Node, rdflib.BNode] = {
+        node: rdflib.BNode(f"b{number:06}") for number, node in enumerate(sorted(nodes, key=place))
+    }
     named = rdflib.Graph(namespace_manager=report.namespace_manager)
     for subject, predicate, value in report:
         named.add((names.get(subject, subject), predicate, names.get(value, value)))

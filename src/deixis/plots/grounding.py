@@ -56,7 +56,7 @@ MAX_CLEAR_ARROWS = 30
 """Maximum number of arrows of violated facts that names avoid."""
 
 LEAST_SHOWN = 0.005
-"""Least probability of an alternative that is named in a picture, which is 0.01 with two digits."""
+"""Minimum probability at which an alternative is named in a picture: 0.01 with two digits."""
 
 WAY_BEND = 0.25
 """Bend of the way of a misplaced object to its place, as a share of its length."""

@@ -71,15 +71,15 @@ def open_ended_figure(found: OpenEnded, into: Axes | None = None) -> Figure:
             _draw(panel, one, title, curve)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9, labelcolor=INK)
-    return figure  # type: ignore[no-any-return]
+    return figure
 
 
 def _draw(axes: Axes, one: Findings, title: str, curve: Curve) -> None:
     """Draw the mean curve of every learner."""
     for number, name in enumerate(dict.fromkeys(taught.contestant for taught in one.taught)):
         mean = mean_curve([curve(taught.course) for taught in one.of(name)])
-        look = {"color": COLOURS[number % len(COLOURS)], "linewidth": 2.2 if number == 0 else 1.2}
-        axes.plot(np.arange(1, len(mean) + 1), mean, label=name, **look)
+        across, colour = np.arange(1, len(mean) + 1), COLOURS[number % len(COLOURS)]
+        axes.plot(across, mean, color=colour, linewidth=2.2 if number == 0 else 1.2, label=name)
     dress_chart(axes, f"{one.name}: {title}", "question and correction iterations")
 
 

@@ -92,7 +92,7 @@ def scoreboard_figure(found: Scoreboard, into: Axes | None = None) -> Figure:
     legend = figure.legend(handles, labels, loc="outside lower center", ncols=7, frameon=False, fontsize=9)
     for text in legend.get_texts():
         text.set_color(INK)
-    return figure  # type: ignore[no-any-return]
+    return figure
 
 
 def _sizes(axes: Axes, sizes: Sequence[int]) -> None:
