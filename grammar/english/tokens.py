@@ -625,6 +625,16 @@ def _says_no_place(words: str) -> bool:
     return "," in words and (prepositions().keys() | PRONOUNS.keys() | IS_FORMS).isdisjoint(said)
 
 
+_INCH_MARKS = ('"', "\u2033", "\u201d")
+"""Marks after a number of inches."""
+
+
+def _is_inch_mark(text: str, start: int, at: int) -> bool:
+    """Return True for a mark right after a number that closes no quotation: *2" from the edge*."""
+    quoted = sum(text.count(mark, start, at) for mark in ("\u201c", '"'))
+    return at > start and text[at - 1].isdigit() and quoted % 2 == 0
+
+
 def words_of(text: str, span: Span) -> list[Word]:
     """Return the words and the punctuation marks of a sentence.
 
@@ -662,7 +672,9 @@ def words_of(text: str, span: Span) -> list[Word]:
             found.append(Word(raw, f"{LITERAL}{name}{LITERAL}", start, end, True))
             continue
         if not raw[0].isalnum() and norm not in _CLITICS:
-            if norm in ("and", "at"):
+            if raw in _INCH_MARKS and _is_inch_mark(text, span[0], start):
+                found.append(Word(raw, "inches", start, end, True))
+            elif norm in ("and", "at"):
                 found.append(Word(raw, norm, start, end, True))
             elif raw in _ARROWS:
                 found.append(Word(raw, ":", start, end, False))

@@ -452,12 +452,27 @@ class Discourse(Statements):
                     need_not_hold=outer.optional,
                 )  # fmt: skip
                 self._say(entity, option, clause.subject)
+        elif positive and _is_choice(subject) and len(entity.members) > 1:
+            self._say_of_one(entity, predicates, subject)
         else:
             self._say(entity, predicates, subject, existential=clause.existential)
         if modal in UNCERTAIN:
             self._alternative_to_the_last(first, entity)
         if modal in OBLIGED:
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _say_of_one(self, options: Entity, predicates: tuple[Predicate, ...], phrase: NounPhrase) -> None:
+        """State predicates of one of several things: *the cup or the mug is on the saucer*."""
+        self.alternatives += 1
+        outer = self.how
+        for option in options.members:
+            self.how = replace(
+                outer, alternative=self.alternatives, optional=True, weight=outer.weight / len(options.members),
+                need_not_hold=outer.optional,
+            )  # fmt: skip
+            self._say(option, predicates, phrase)
+        self.how = outer
+        self.references.recent.insert(0, Focus(options, [], None, outer.sentence))
 
     def _inserted_condition(self, subject: NounPhrase | None, predicates: tuple[Predicate, ...]) -> str | None:
         """Return the condition between a subject and what is said about it."""
@@ -631,6 +646,12 @@ def _names_any(phrase: NounPhrase) -> bool:
     parts = phrase.members or (phrase,)
     bare = all(p.head and p.owner is None and p.count is None for p in parts)
     return bare and all(p.determiner in ("a", "an", "any", None) for p in parts)
+
+
+def _is_choice(phrase: NounPhrase) -> bool:
+    """Return True for *a cup or a mug*, of which one is meant, but not for *plates or bowls*, which are both."""
+    kinds = all(member.plural and member.determiner is None for member in phrase.members)
+    return phrase.joined_by == "or" and not kinds
 
 
 def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:

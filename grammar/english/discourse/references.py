@@ -272,7 +272,8 @@ class References:
             entity.aliases.add(amount[0])
             self.renamed.append(entity)
         lump = next((word for word in words if word in SINGLE_PLURALS and is_one_thing(written)), None)
-        if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
+        paired = stem in PAIRED and (phrase.determiner is not None or phrase.owner is not None)
+        if count is None and phrase.plural and lump is None and (paired or phrase.determiner == "both"):
             count = 2
         if phrase.of is not None and phrase.of.plural and stem in GROUPS:
             entity.aliases.add(phrase.of.head)
@@ -844,6 +845,9 @@ class References:
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
         last = self.recent[0] if self.recent else None
+        named = last.subject if last is not None and last.relation is None and not last.others else None
+        if named is not None and named.members and not named.noun and relation is None and besides is None:
+            return named  # 'next is the cup and saucer. It goes …'
         parallel = last is not None and self.holder in ("inside", "on") and last.relation == self.holder
         if last is not None and parallel and relation != "under":
             held = last.others if last.sentence == self.sentence and last.subject is not besides else []

@@ -25,8 +25,11 @@ from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
 
-AT_CORNER = re.compile(r"(?:at|in|on)\s+the\s+[\w-]+\s+(?:left|right)", re.IGNORECASE)
-"""Corner as a place, and not as a direction: *at the upper left*, not *to the upper left*."""
+AT_CORNER = re.compile(
+    r"(?:\b(?:at|in|on)\s+the\s+[\w-]+\s+|^(?:top|upper|bottom|lower)[\s-]+)(?:left|right)(?:\s+(?:position|spot|place))?$",
+    re.IGNORECASE,
+)
+"""Corner as a place, and not as a direction: *at the upper left* and *top left*, not *to the upper left*."""
 
 MAX_WORDS_AFTER = 3
 """Number of words between a relative clause and the pronoun that stands for its last thing."""
@@ -455,7 +458,7 @@ class Relations(Mentions):
         if last is not None and near and not last.how.guesses & UNANCHORED:
             self._add(predicate.relation, (subject,), last.arguments, value=last.value)
             return True
-        if not AT_CORNER.match(self.text[slice(*predicate.span)]):
+        if not AT_CORNER.search(self.text[slice(*predicate.span)]):
             return False
         self._add("part", (subject,), (), value=predicate.relation.replace("_", " "))
         return True
@@ -475,6 +478,11 @@ class Relations(Mentions):
         contrasted = self._of_the_other(subject, predicate.relation) if predicate.part is None else None
         if contrasted is not None:
             self._pair(subject, predicate.relation, contrasted, False)
+            return
+        across = self._side_of(subject, predicate)
+        if across is not None:
+            self.how = self._guessed(Guess.OF_THE_LAST)
+            self._pair(subject, predicate.relation, across, False)
             return
         beside = self.drafts[-1] if self.drafts else None
         person = beside is not None and not beside.arguments and beside.value in PEOPLE and beside.metres is None
@@ -526,6 +534,18 @@ class Relations(Mentions):
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
             self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _side_of(self, subject: Entity, predicate: Predicate) -> Entity | None:
+        """Return the thing of which *on the right* is the other side: *A on the left of the plate, B on the right*."""
+        opposite = OPPOSITES.get(predicate.relation)
+        if predicate.relation not in ("left", "right") or predicate.part is None or not self.how.positive:
+            return None
+        here = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation in ("left", "right")]
+        last = here[-1] if here else None
+        if last is None or last.relation != opposite or len(last.arguments) != 1 or not last.how.positive:
+            return None
+        thing = last.arguments[0]
+        return thing if thing.role is Role.THING and subject not in (*last.subjects, thing) else None
 
     def _of_the_other(self, subject: Entity, relation: str) -> Entity | None:
         """Return what the other one is on the other side of: *the box left of the desk … the one to the right*."""

@@ -26,6 +26,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
+from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -49,7 +50,11 @@ UNARY = frozenset(
 FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire", "tail", "chain", "flex"})
 """Parts that reach to other places than their wholes."""
 
-NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
+NOT_STATES = word_set(
+    "need turn roll lay put place set leave open water know call referred name mean work pick choose use allow require"
+    " include exclude recommended dedicated devoted recommend suggest advise ask forget remember consider regard offer give hand drink eat keep say"
+)
+"""Verbs whose participles tell no state of a thing."""
 
 
 def _is_all_else(predicate: Predicate) -> bool:
@@ -154,8 +159,8 @@ class Statements(Relations):
             value = None
         elif value is None or relation in ("other", "position") or value in NOT_STATES:
             return
-        elif relation == "state" and "being" in predicate.adverbs:
-            return  # 'it is being cleaned' tells what happens, and not a state
+        elif relation == "state" and ("being" in predicate.adverbs or Guess.CUT_SHORT in self.how.guesses):
+            return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
         self._add(relation, (subject,), (), value=value)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
