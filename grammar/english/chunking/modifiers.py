@@ -260,7 +260,7 @@ class ModifierFinder(NounFinder):
     def _free(self, at: int) -> bool:
         """Return True if no noun stands before this word."""
         before = self.norms[at - 1] if at else ""
-        return not before or before in self._closed or not before[0].isalpha()
+        return not before or before in self._closed or not before[0].isalpha() or self.follows_command(at)
 
     def _noun_by_position(self, at: int) -> bool:
         before = self.norms[at - 1] if at else ""

@@ -272,7 +272,24 @@ class NounFinder:
             return True
         after_preposition = at > 0 and (self.norms[at - 1] == "of" or self.norms[at - 1] in prepositions())
         shaped = norm.endswith("ed") and len(norm) > 4 and self._nouns.knows(self.norms[at + 1])
-        return after_preposition and shaped and self.is_noun(at + 1)  # 'with crumpled paper'
+        ordered = shaped and self.follows_command(at)
+        return (after_preposition or ordered) and shaped and self.is_noun(at + 1)  # 'with crumpled paper'
+
+    def follows_command(self, at: int) -> bool:
+        """Return True after the verb of a command where a clause begins: *put crumpled* in *put crumpled paper*.
+
+        Parameters
+        ----------
+        at
+            Index of the word after the verb.
+
+        Returns
+        -------
+        bool
+            True if the word before can only be the verb of a command there.
+        """
+        begins = at == 1 or (at > 1 and self.norms[at - 2] in ("and", "then", ",", ";", ":"))
+        return begins and self.norms[at - 1] in PUT_VERBS
 
     def is_participle_of_one(self, at: int) -> bool:
         """Return True for an unknown participle before *one* or *ones*: *unfired ones*.

@@ -337,7 +337,7 @@ class VerbChunker(RelatorChunker):
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
-            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS
+            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS | MODALS.keys()
             if (
                 self._previous() in ("", "COMMA")
                 and form.form == "past"

@@ -610,12 +610,14 @@ class Builder(Transformer[Any, Built]):
         found: list[Predicate] = []
         several: NounPhrase | None = None
         for noun in nouns[::2]:
-            for member in _with_shared_place(noun.phrase):
+            for i, member in enumerate(_with_shared_place(noun.phrase)):
                 if several is not None:
                     member = _beside(member, several)
                 several = replace(member, predicates=()) if member.plural else several
                 made = _accompanied(relator, member, union(chunk.span, noun.phrase.span))
                 joined = relator.preposition.phrase in _SHARING_PLACES and not member.predicates and relator.positive
+                if i and noun.phrase.joined_by == "or":  # 'cover the bowl with a cloth or a lid'
+                    made = [replace(p, adverbs=(*p.adverbs, _OR)) for p in made]
                 found += [replace(p, adverbs=(*p.adverbs, "too")) for p in made] if joined else made
             found += noun.extra
         return tuple(found)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses import asides
 from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
 from deixis.grammar.english.clauses.ellipses import filled_in
@@ -85,7 +86,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
-        _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without(asides.framing), _without(asides.manner), _without(asides.consequence),
+        _without(asides.compared_quality), _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),

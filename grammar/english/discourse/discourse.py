@@ -421,10 +421,35 @@ class Discourse(Statements):
                 self._say(entity, option, clause.subject)
         else:
             self._say(entity, predicates, subject, existential=clause.existential)
+            if self._leaves_choice(subject, clause):
+                self._choose_among(first, entity)
         if modal in UNCERTAIN:
             self._alternative_to_the_last(first, entity)
         if modal in OBLIGED:
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _leaves_choice(self, subject: NounPhrase, clause: Clause) -> bool:
+        """Return True for *a cup or a mug stands on it*, and False for *cups or mugs must not stand on it*.
+
+        What is said of two kinds of things holds of both: *knives or scissors go into the drawer*.
+        """
+        kinds = all(member.plural and member.determiner is None and member.count is None for member in subject.members)
+        affirmed = clause.positive and all(predicate.positive for predicate in clause.predicates)
+        both = "and/or" in "".join(self.text[slice(*subject.span)].casefold().split())
+        return subject.joined_by == "or" and affirmed and not both and (clause.mood is Mood.COMMAND or not kinds)
+
+    def _choose_among(self, first: int, group: Entity) -> None:
+        """Make what was said of a group, since a draft, a choice among its members."""
+        self.alternatives += 1
+        share = 1 / len(group.members) if group.members else 1.0
+        found: list[Draft] = []
+        for draft in self.drafts[first:]:
+            if draft.subjects != (group,) or not group.members:
+                found.append(draft)
+                continue
+            how = replace(draft.how, alternative=self.alternatives, optional=True, weight=min(draft.how.weight, share))
+            found += [replace(draft, subjects=(member,), how=how) for member in group.members]
+        self.drafts[first:] = found
 
     def _inserted_condition(self, subject: NounPhrase | None, predicates: tuple[Predicate, ...]) -> str | None:
         """Return the condition between a subject and what is said about it."""

@@ -237,6 +237,10 @@ class References:
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
             return self.find(inner, relation, besides)
         earlier = self._carrier(phrase, relation, besides) or self._earlier(phrase)
+        own = earlier is not None and besides is not None and earlier in [leaf.itself for leaf in besides.leaves()]
+        if own and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
+            others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
+            earlier = next((e for e in others if not _conflicting(e, phrase)), None)  # 'the sleeping bag is in the bag'
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
             other = bool(phrase.adjectives) and besides.noun != noun  # 'the oat milk behind the whole milk'
