@@ -305,6 +305,14 @@ def _read_levels(words: list[Word]) -> None:
             del words[i + 1]
 
 
+def _read_opposites(words: list[Word]) -> None:
+    """Read *at opposite ends of the shelf* as *at both ends of the shelf*."""
+    for i in range(1, len(words) - 1):
+        facing = words[i].norm == "opposite" and words[i + 1].norm in ("ends", "edges", "corners")
+        if facing and words[i - 1].norm in ("at", "on", "in", "from", "near"):
+            words[i].norm = "both"
+
+
 def _read_setups(words: list[Word]) -> None:
     """Read *in a two-light set up* as one noun, and leave out *built-in* before a place."""
     for i in range(len(words) - 2, 1, -1):
@@ -647,6 +655,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _join_asides(text, found)
     _read_hours(found)
     _read_levels(found)
+    _read_opposites(found)
     _read_setups(found)
     _without_settings(found)
     _read_facing_commands(found)

@@ -482,6 +482,9 @@ class NounFinder:
         stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
         if stands and (before in PLACE_NOUNS or (is_adjective(before) and self._nouns.knows(before))):
             return False  # 'in the middle stands the crucifix'
+        one = at > 1 and self.norms[at - 2] in _SINGULAR and is_adjective(before) and self._nouns.knows(before)
+        if one and form.form == "s" and form.kind != "posture" and self.is_determiner(at + 1):
+            return False  # 'this light creates a glow'
         holds = form.form == "s" and form.kind == "transitive" and before in PLACE_NOUNS and self._nounish(at + 1)
         if holds and not is_adjective(self.norms[at - 2]) and self.is_determiner(at - 2):
             return False  # 'the one in the middle holds buttons'
@@ -927,6 +930,9 @@ _AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at
 """Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""
 
 _LATIN_PLURALS = ("ae", "i", "a")
+
+_SINGULAR = word_set("a an this that each every another")
+"""Determiners of one thing, after which a word in *-s* is a verb."""
 
 _NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
 

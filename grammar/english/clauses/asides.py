@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import end_before, type_at
 from deixis.grammar.english.tree import Degree
+from deixis.grammar.english.vocabulary.nouns import GENERAL, last_word
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 
 Run = tuple[int, Chunk | None]
 """End of a run of chunks, and the chunk that is put in its place, if any."""
@@ -135,10 +139,141 @@ def compared_quality(chunks: list[Chunk], at: int) -> Run | None:
     return end, None
 
 
+def examples(chunks: list[Chunk], at: int) -> Run | None:
+    """Find examples of the things before: *small tools, such as files and awls, …*, *items like keys and coins …*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the preposition, or of the comma before it.
+
+    Returns
+    -------
+    tuple or None
+        End of the phrase, with the comma after one in commas, and None; None if no such phrase begins here.
+    """
+    apart = type_at(chunks, at) == "COMMA"
+    first = at + apart
+    before = chunks[at - 1] if at else None
+    if before is None or before.type != "NP" or not before.value.plural or type_at(chunks, first) != "PREP":
+        return None
+    word = chunks[first].value.preposition.phrase
+    general = last_word(before.value.head) in GENERAL
+    if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in _COMMANDS))):
+        return None
+    end, last = first + 1, 0
+    while type_at(chunks, end) == "NP":
+        end += 1
+        while [type_at(chunks, end), type_at(chunks, end + 1)] == ["OF", "NP"]:
+            end += 2
+        last = end
+        while type_at(chunks, end) in ("COMMA", "AND", "OR"):
+            end += 1
+    if not last or any(chunk.type == "NP" and chunk.value.pronoun for chunk in chunks[first:last]):
+        return None
+    last = _end_of_list(chunks, first, last)
+    closed = apart and type_at(chunks, last) == "COMMA" and type_at(chunks, last + 1) not in _COMMANDS | {"AND"}
+    _leave_out(chunks[first:last], "examples say what the things before can be")
+    return last + closed, None
+
+
+def first_of_two_commands(chunks: list[Chunk], at: int) -> Run | None:
+    """Find the first of two verbs with one object, which looks like a noun: *and pull and fold the corners …*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the verb.
+
+    Returns
+    -------
+    tuple or None
+        End of the verb with its conjunction, and None; None if no such verb stands here.
+    """
+    types = [type_at(chunks, at + k) for k in range(-1, 4)]
+    if types[1:3] not in (["NP", "AND"], ["NP", "OR"]) or types[3] not in ("PUT", "DO") or types[4] != "NP":
+        return None
+    phrase = chunks[at].value
+    bare = phrase.determiner is None and phrase.owner is None and phrase.count is None and not phrase.adjectives
+    form = verb_forms().get(phrase.head) if bare and not phrase.plural else None
+    begins = types[0] in ("", "ADVERB", "AND", "THEN", "CUT") and (types[0] == "" or _commands_before(chunks, at))
+    return (at + 2, None) if begins and form is not None and form.form == "base" else None
+
+
+def _commands_before(chunks: list[Chunk], at: int) -> bool:
+    """Return True after a command whose place ends with a noun, so that a noun after *and* would be another place."""
+    return any(chunk.type in _COMMANDS for chunk in chunks[:at]) and type_at(chunks, at - 2) == "COMMA"
+
+
+def _end_of_list(chunks: list[Chunk], first: int, last: int) -> int:
+    """Return the end of a list of which the last noun is not the subject of a verb: *such as awls, and files lie …*."""
+    joints = [k for k in range(first, last) if chunks[k].type in ("COMMA", "AND", "OR")]
+    if joints and type_at(chunks, last) in FINITE:
+        closing = [k for k in joints if chunks[k].type == "COMMA"]
+        return next((k for k in closing if chunks[k + 1].type != "AND"), joints[-1]) if closing else last
+    return last
+
+
+def layer(chunks: list[Chunk], at: int) -> Run | None:
+    """Find a command to make a layer or a group somewhere, which is put there: *make a thin layer on the gravel*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the verb.
+
+    Returns
+    -------
+    tuple or None
+        End of the verb, and a command to put its object; None for another verb, or without a place.
+    """
+    types = [type_at(chunks, at + k) for k in range(3)]
+    group = chunks[at].value
+    made = types[:2] in (["DO", "NP"], ["PUT", "NP"]) and isinstance(group, VerbGroup) and group.lemma in _MAKING
+    end = at + 2 + 2 * ([type_at(chunks, at + k) for k in (2, 3)] == ["OF", "NP"])
+    if not made or last_word(chunks[at + 1].value.head) not in _LAYERS or type_at(chunks, end) != "PREP":
+        return None
+    put = replace(group, lemma="put", kind="posture")
+    return at + 1, replace(chunks[at], type="PUT", value=put)
+
+
+def replacement(chunks: list[Chunk], at: int) -> Run | None:
+    """Find a command to put something back: *replace the lid on the jar*, but not *replace the cup with a glass*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the verb.
+
+    Returns
+    -------
+    tuple or None
+        End of the verb, and a command to put its object; None for another verb, or without a place.
+    """
+    group = chunks[at].value
+    back = chunks[at].type == "DO" and isinstance(group, VerbGroup) and group.lemma == "replace"
+    if not back or [type_at(chunks, at + k) for k in (1, 2, 3)] != ["NP", "PREP", "NP"]:
+        return None
+    if chunks[at + 2].value.preposition.relation not in ("on", "inside", "under", "above", "behind"):
+        return None
+    return at + 1, replace(chunks[at], type="PUT", value=replace(group, lemma="put", kind="posture"))
+
+
 def _leave_out(chunks: list[Chunk], reason: str) -> None:
     """Report chunks that are left out."""
     misunderstood((chunks[0].span[0], chunks[-1].span[1]), reason)
 
 
+_MAKING = frozenset({"make", "create", "form", "build"})
+_LAYERS = word_set("layer bed row line ring circle pile heap mound stack border coat coating")
+"""Nouns of what is made where it is to be."""
 _STEMS = _CAUSING | {lemma.removesuffix("e") for lemma in _CAUSING}
 """Such verbs, and their stems before *-ing* where no table has the verb."""

@@ -399,7 +399,8 @@ class Discourse(Statements):
             and self._of_last(predicates, subject)
         ):
             return
-        if last_word(subject.head) in GENERAL and any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives):
+        best = any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives)
+        if last_word(subject.head) in GENERAL and best and not subject.plural:
             self._superlative_apposition(subject, predicates)
             return
         entity = self._subject(subject, predicates)

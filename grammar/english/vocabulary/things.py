@@ -96,7 +96,7 @@ _OF_CLAUSES = (
     DETERMINERS
     | POSSESSIVES.keys()
     | MODALS.keys()
-    | word_set("once when while if because that which who then until not than")
+    | word_set("once when while if because that which who then until not than enough")
 ) - word_set("a single only same other need no can")
 """Words that stand in a clause and not inside a name; *can* is a vessel too, and *panel A* a name."""
 
