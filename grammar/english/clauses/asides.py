@@ -8,6 +8,7 @@ from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Ve
 from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import end_before, type_at
 from deixis.grammar.english.tree import Degree
+from deixis.grammar.english.vocabulary.function_words import PERSONS
 from deixis.grammar.english.vocabulary.nouns import GENERAL, last_word
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import verb_forms
@@ -218,6 +219,69 @@ def _end_of_list(chunks: list[Chunk], first: int, last: int) -> int:
     return last
 
 
+def used_things(chunks: list[Chunk], at: int) -> Run | None:
+    """Find which things a command is about, by their use: *put the tools that you use the most in the drawer*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the relative pronoun.
+
+    Returns
+    -------
+    tuple or None
+        End of the relative clause before the place, and None; None for another clause.
+    """
+    command = [type_at(chunks, at + k) for k in (-2, -1, 0, 1)] == ["PUT", "NP", "REL", "NP"]
+    group = chunks[at + 2].value if command and at + 2 < len(chunks) else None
+    if not isinstance(group, VerbGroup) or group.lemma not in _USING or chunks[at + 1].value.pronoun not in PERSONS:
+        return None
+    end = at + 3
+    while type_at(chunks, end) == "ADVERB" or (type_at(chunks, end) == "NP" and _is_degree(chunks[end])):
+        end += 1
+    if type_at(chunks, end) not in ("PREP", "ADV"):
+        return None
+    _leave_out(chunks[at:end], "this says which things are meant")
+    return end, None
+
+
+def _is_degree(chunk: Chunk) -> bool:
+    """Return True for *the most* and *least*, which look like noun phrases."""
+    phrase = chunk.value
+    return not phrase.head and not phrase.pronoun and (phrase.determiner in ("most", "the") or bool(phrase.adjectives))
+
+
+def followers(chunks: list[Chunk], at: int) -> Run | None:
+    """Find a comma in a list of what follows a thing: *the king, followed by the queen, bishop and rook*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the comma.
+
+    Returns
+    -------
+    tuple or None
+        End of the joints, and *and* instead of them; None for another comma.
+    """
+    if type_at(chunks, at) != "COMMA" or type_at(chunks, at - 1) != "NP":
+        return None
+    first = at - 1
+    while first > 1 and type_at(chunks, first - 1) in ("COMMA", "AND") and type_at(chunks, first - 2) in ("NP", "AND"):
+        first -= 1 + (type_at(chunks, first - 1) in ("COMMA", "AND"))
+    led = type_at(chunks, first - 1) == "PREP" and type_at(chunks, first - 2) == "PART"
+    follows = led and chunks[first - 2].value.lemma == "follow"
+    end = at + 1 + (type_at(chunks, at + 1) == "AND")
+    ends = type_at(chunks, end) == "NP" and type_at(chunks, end + 1) in ("COMMA", "AND", "CUT", "")
+    if not follows or not ends:
+        return None
+    return end, replace(chunks[at], type="AND", value="and")
+
+
 def layer(chunks: list[Chunk], at: int) -> Run | None:
     """Find a command to make a layer or a group somewhere, which is put there: *make a thin layer on the gravel*.
 
@@ -275,5 +339,7 @@ def _leave_out(chunks: list[Chunk], reason: str) -> None:
 _MAKING = frozenset({"make", "create", "form", "build"})
 _LAYERS = word_set("layer bed row line ring circle pile heap mound stack border coat coating")
 """Nouns of what is made where it is to be."""
+_USING = word_set("use need want like access reach handle")
+"""Verbs of a person that tell things apart, and not where they are."""
 _STEMS = _CAUSING | {lemma.removesuffix("e") for lemma in _CAUSING}
 """Such verbs, and their stems before *-ing* where no table has the verb."""

@@ -253,8 +253,9 @@ class References:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
         several = several and not any(a.dimension == "colour" for a in phrase.adjectives)
-        if several and last in GENERAL - {"piece"} and noun == last:
-            return None  # 'the following items'
+        described = any(a.dimension != "other" for a in phrase.adjectives)
+        if several and last in GENERAL - {"piece"} and noun == last and not described:
+            return None  # 'the following items', but 'the heavy items'
         if phrase.owner is not None:
             self.find(phrase.owner, relation, besides)
         return self._new(phrase, Role.SURROUNDING if noun in SURROUNDINGS else Role.THING)
@@ -402,6 +403,10 @@ class References:
                 continue  # 'the white pieces' after '12 pieces'
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
+            bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
+            longer = entity.noun != phrase.head and not entity.was_called(phrase.head)
+            if bare and longer and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'folded napkins' after 'the paper napkins'
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (

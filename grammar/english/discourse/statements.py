@@ -49,7 +49,10 @@ UNARY = frozenset(
 FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire", "tail", "chain", "flex"})
 """Parts that reach to other places than their wholes."""
 
-NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
+NOT_STATES = frozenset(
+    ["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water", "know", "call", "design", "intend",
+     "suggest", "utilize", "recommend"]
+)  # fmt: skip
 
 
 class Statements(Relations):
@@ -165,12 +168,14 @@ class Statements(Relations):
         relation = relation or (last.relation if last is not None and last.relation in ("left", "right") else "next_to")
         if last is not None and last.relation in ("on", "inside", "above", "under"):
             return  # 'on the gravel comes moss, followed by charcoal' tells an order in time
+        before = subject
         for phrase in predicate.arguments:
             for member in phrase.members or (phrase,):
                 following = self._introduce(member, "right", subject)
                 if following is not None:
-                    self._pair(following, relation, subject, False)
+                    self._pair(following, relation, before, False)
                     others.append(following)
+                    before = following
 
     def _say_kind(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read *it is the tallest*, *the third is the shortest of them*, *it is a red cup*."""

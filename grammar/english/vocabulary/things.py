@@ -5,6 +5,7 @@ from __future__ import annotations
 from deixis.grammar.english.vocabulary.function_words import (
     DETERMINERS,
     MODALS,
+    NUMBERS,
     OTHER_UNITS,
     POSSESSIVES,
 )
@@ -149,7 +150,8 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     at = words.index("can") if "can" in words[1:-1] else 0
     if at and not nouns.knows(words[at + 1]):
         return True  # 'rules can vary', not 'garbage can lid'
-    if words[0] in _PARTICIPLES:
+    counted = words[0].endswith("ing") and not NUMBERS.keys().isdisjoint(words[1:-1])
+    if words[0] in _PARTICIPLES or counted:  # 'placing lids', 'drilling two screws'
         return True
     for place, word in enumerate(words):
         form = verb_forms().get(word)
