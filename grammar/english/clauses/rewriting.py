@@ -97,7 +97,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
         _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
         _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
-        _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
+        _with_shared_objects, _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -1078,6 +1078,32 @@ def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
         if aims and part == "bowl" and tool and whose.owner is not None:
             whose = replace(whose, head="tip")
         found[i] = replace(chunk, value=whose)
+    return found
+
+
+def _with_shared_objects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the stand holds a cup below or behind the jug* with the jug after both prepositions.
+
+    After *have*, the second place would be that of the subject: *one side has a lamp above or below the box*.
+    """
+    found: list[Chunk] = []
+    end = 0
+    for i, chunk in enumerate(chunks):
+        if i < end:
+            continue
+        types = [type_at(chunks, i + k) for k in range(-2, 4)]
+        shares = types[:3] == ["TVERB", "NP", "ADV"] and types[3] in ("AND", "OR") and types[4:] == ["PREP", "NP"]
+        heights = ("above", "below", "behind", "in_front", "under")
+        if shares and chunk.value.preposition.relation in heights and chunks[i - 2].value.lemma == "have":
+            end = i + 4
+            if types[3] == "AND":
+                found += [replace(chunk, type="PREP"), replace(chunks[i + 3], start=chunk.end)]
+            _leave_out(chunks[i + (types[3] == "AND") : end], "this does not say which of the two is where")
+        elif shares and chunk.value.preposition.relation in heights:
+            shared = replace(chunks[i + 3], start=chunk.end, end=chunk.end)
+            found += [replace(chunk, type="PREP"), shared]
+        else:
+            found.append(chunk)
     return found
 
 
