@@ -45,6 +45,11 @@ def framing(chunks: list[Chunk], at: int) -> Run | None:
     types = [type_at(chunks, at + k) for k in range(5)]
     if types[:2] == ["UNKNOWN", "COMMA"] and chunks[at].value == "speaking" and at:
         return at + 2, None
+    doing = types[0] == "UNKNOWN" and types[1] in ("TPART", "PART") and chunks[at].value in ("in", "by")
+    end = end_before(chunks, at + 1, _BREAKS) if doing else at
+    if doing and type_at(chunks, end) == "COMMA" and chunks[at + 1].value.form == "ing":
+        _leave_out(chunks[at:end], "how something is done is not where it is")
+        return end + 1, None
     case = types == ["PREP", "NP", "OF", "NP", "COMMA"] and chunks[at].value.preposition.relation == "inside"
     clause = case and any(chunk.type in FINITE | _COMMANDS for chunk in chunks[at + 5 :])
     if not clause or chunks[at + 1].value.head not in _CASES or chunks[at + 1].value.adjectives:
@@ -158,9 +163,11 @@ def examples(chunks: list[Chunk], at: int) -> Run | None:
     apart = type_at(chunks, at) == "COMMA"
     first = at + apart
     before = chunks[at - 1] if at else None
-    if before is None or before.type != "NP" or not before.value.plural or type_at(chunks, first) != "PREP":
+    if before is None or before.type != "NP" or type_at(chunks, first) != "PREP":
         return None
     word = chunks[first].value.preposition.phrase
+    if not before.value.plural and not (word == "such as" and apart):
+        return None
     general = last_word(before.value.head) in GENERAL
     if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in _COMMANDS))):
         return None
@@ -280,6 +287,33 @@ def followers(chunks: list[Chunk], at: int) -> Run | None:
     if not follows or not ends:
         return None
     return end, replace(chunks[at], type="AND", value="and")
+
+
+def side_up(chunks: list[Chunk], at: int) -> Run | None:
+    """Find which side is up: *the tokens go beside the board, letter side up*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the comma before the phrase.
+
+    Returns
+    -------
+    tuple or None
+        End of the phrase, and None; None if no such phrase begins here.
+    """
+    types = [type_at(chunks, at + k) for k in range(3)]
+    if types[:2] != ["COMMA", "NP"] or types[2] not in ("ADVERB", "ADV"):
+        return None
+    side = chunks[at + 1].value
+    said = chunks[at + 2].value if types[2] == "ADVERB" else chunks[at + 2].value.preposition.phrase
+    bare = side.determiner is None and side.owner is None and " " in side.head and last_word(side.head) == "side"
+    if not bare or str(said).split()[-1:] not in (["up"], ["down"], ["upward"], ["downward"], ["upwards"]):
+        return None
+    _leave_out(chunks[at + 1 : at + 3], "which side is up does not say where something is")
+    return at + 3, None
 
 
 def layer(chunks: list[Chunk], at: int) -> Run | None:

@@ -611,6 +611,9 @@ class Builder(Transformer[Any, Built]):
         found: list[Predicate] = []
         several: NounPhrase | None = None
         for noun in nouns[::2]:
+            turned = noun.extra[:1] and noun.extra[0].relation in ("facing", "pointing")
+            if turned and is_place(noun.phrase):  # 'with the inside facing up'
+                noun = Noun(replace(noun.phrase, predicates=noun.extra))
             for i, member in enumerate(_with_shared_place(noun.phrase)):
                 if several is not None:
                     member = _beside(member, several)

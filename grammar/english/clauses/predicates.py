@@ -574,6 +574,9 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     ):
         value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
         relation = "facing"
+    elif lemma in _ROTATING and relation == "far":
+        value = Adjective("away", "position", Degree.PLAIN, following.span)
+        relation, arguments = "facing", ()  # 'turn the label away from you'
     elif lemma in _ROTATING and relation in ("to", "facing", "pointing") and arguments:
         relation = "facing"  # 'its opening turned to the fire'
     elif relation == "through" and lemma in _PASSING:

@@ -55,6 +55,11 @@ NOT_STATES = frozenset(
 )  # fmt: skip
 
 
+_DETACHED = frozenset({"lid", "cap"})
+"""Parts that are taken off their thing, and then have a place of their own."""
+_APART = frozenset({"on", "inside", "under", "next_to", "near", "behind", "in_front", "left", "right", "above", "below"})
+
+
 class Statements(Relations):
     """Reader of predicates."""
 
@@ -69,6 +74,11 @@ class Statements(Relations):
         handler = getattr(self, f"_say_{relation}", None)
         if subject.itself.absent and predicate.arguments and self.how.positive and not self.how.past:
             self._found_elsewhere(subject.itself)
+        if subject.role is Role.PART and subject.noun in _DETACHED:
+            apart = NounPhrase(self.how.span, head=subject.noun, determiner="the")
+            lies = relation in _APART and bool(predicate.arguments)
+            thing = self.references.find(apart) if lies else self.references.earlier(apart)
+            subject = thing or subject  # 'the lid of the jar is on the tray'
         if subject.role is Role.PART and subject.whole is not None:
             if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
                 self._add("pointing", (subject.whole,), (), value=relation)

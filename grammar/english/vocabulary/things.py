@@ -70,7 +70,7 @@ _CONCRETE = word_set(
     " instrument ornament garment monument cement parchment pigment compartment document equipment element apartment"
     " arrangement movement ointment pavement basement casement segment fragment filament ligament attachment implement"
     " battlement pediment tenement condiment monument refreshment liniment embankment escarpment complement sediment"
-    " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
+    " settlement encampment allotment fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
     " mechanism organism position"
 )
