@@ -396,6 +396,10 @@ class References:
             kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
             if kind and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'towels' after 'a towel'
+            one = not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
+            apart = any(a.degree is Degree.PLAIN and a.rank is None for a in phrase.adjectives)
+            if one and apart and not entity.members and not _agreement(entity, phrase):
+                continue  # 'the shallow drawer' after 'the bottom drawers'
             coloured = {("colour", a.word) for a in phrase.adjectives if a.dimension == "colour"}
             if coloured and entity.members and phrase.plural and not any(
                 coloured & leaf.adjectives for leaf in entity.leaves()
