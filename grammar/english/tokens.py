@@ -709,7 +709,7 @@ _LENGTH_MARKS = {"'": "foot", "\u2019": "foot", "\u2032": "foot", '"': "inch", "
 def _is_length(text: str, span: tuple[int, int], number: Word, at: int) -> bool:
     """Return True for the mark of *the 8' boards*, and not for the end of a quotation that was begun before."""
     mark = text[at]
-    opened = sum(text[span[0] : at].count(quote) for quote in {mark, "\u201c" if mark in "\"\u201d" else mark})
+    opened = sum(text[span[0] : at].count(quote) for quote in {mark, "\u201c" if mark in '"\u201d' else mark})
     apostrophes = len(re.findall(rf"(?<=\w){mark}(?=\w)", text[span[0] : at]))
     return number.norm.isdigit() and number.end == at and (opened - apostrophes) % 2 == 0
 

@@ -264,7 +264,7 @@ class ModifierFinder(NounFinder):
 
     def _noun_by_position(self, at: int) -> bool:
         before = self.norms[at - 1] if at else ""
-        if self.norms[at + 1] == "," and is_adjective(self.norms[at + 2]) and self._nounish(at + 3):
+        if self.norms[at + 1] == "," and self.norms[at] != "orange" and self._nounish(at + 3):
             return False  # 'on a flat, stable surface'
         return (before in ("a", "an") and self.norms[at] in ("orange", "square", "cream", "flat")) or (
             before in ("the", "some", "and", "with", "of", ",")

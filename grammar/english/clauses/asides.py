@@ -372,8 +372,14 @@ def _leave_out(chunks: list[Chunk], reason: str) -> None:
 
 _MAKING = frozenset({"make", "create", "form", "build"})
 _LAYERS = word_set("layer bed row line ring circle pile heap mound stack border coat coating")
-"""Nouns of what is made where it is to be."""
+"""Nouns of what is made at its place."""
 _USING = word_set("use need want like access reach handle")
 """Verbs of a person that tell things apart, and not where they are."""
 _STEMS = _CAUSING | {lemma.removesuffix("e") for lemma in _CAUSING}
 """Such verbs, and their stems before *-ing* where no table has the verb."""
+
+FINDERS = (
+    framing, manner, consequence, compared_quality, examples, side_up, first_of_two_commands, used_things, followers,
+    layer, replacement,
+)  # fmt: skip
+"""Finders of phrases beside the statement, in the order in which they are used."""

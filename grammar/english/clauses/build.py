@@ -653,7 +653,7 @@ class Builder(Transformer[Any, Built]):
 
     def relative(self, rel: Chunk, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that stands on the tray*."""
-        told = flat(verb)
+        told = tuple(flat(verb))
         if verb.group.modal in _OBLIGING:  # 'the lid, which needs to be removed'
             told = tuple(p for p in told if p.relation != "state")
         return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in told)
@@ -939,7 +939,7 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
 _NO_TARGETS = frozenset({"direction", "position", "area", "inside", "outside", "o'clock"})
 
 _OBLIGING = frozenset({"should", "must", "need", "have to", "ought", "shall"})
-"""Modal verbs of what is to be done, which is not yet so."""
+"""Modal verbs of what must be done, and is not yet so."""
 _OR = "or"
 """Mark, among the adverbs of a place, of an alternative to the place before it."""
 

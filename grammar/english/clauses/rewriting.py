@@ -86,9 +86,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
-        _without(asides.framing), _without(asides.manner), _without(asides.consequence),
-        _without(asides.compared_quality), _without(asides.examples),
-        _without(asides.side_up), _without(asides.first_of_two_commands), _without(asides.used_things), _without(asides.followers), _without(asides.layer), _without(asides.replacement), _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        *(_without(find) for find in asides.FINDERS),
+        _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),

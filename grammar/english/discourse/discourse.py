@@ -432,7 +432,7 @@ class Discourse(Statements):
     def _leaves_choice(self, subject: NounPhrase, clause: Clause) -> bool:
         """Return True for *a cup or a mug stands on it*, and False for *cups or mugs must not stand on it*.
 
-        What is said of two kinds of things holds of both: *knives or scissors go into the drawer*.
+        A statement about two kinds of things holds for both: *knives or scissors go into the drawer*.
         """
         kinds = all(member.plural and member.determiner is None and member.count is None for member in subject.members)
         affirmed = clause.positive and all(predicate.positive for predicate in clause.predicates)
@@ -440,7 +440,7 @@ class Discourse(Statements):
         return subject.joined_by == "or" and affirmed and not both and (clause.mood is Mood.COMMAND or not kinds)
 
     def _choose_among(self, first: int, group: Entity) -> None:
-        """Make what was said of a group, since a draft, a choice among its members."""
+        """Make the drafts about a group, from one draft on, a choice among its members."""
         self.alternatives += 1
         share = 1 / len(group.members) if group.members else 1.0
         found: list[Draft] = []
@@ -632,6 +632,9 @@ def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:
     if subject is None:
         return frozenset()
     vague = subject.pronoun in ("these", "those") and not (subject.head or subject.of or subject.adjectives)
+    twice = subject.pronoun == "it" and any(a.pronoun == "it" for p in clause.predicates[:1] for a in p.arguments)
+    if twice and clause.mood is Mood.COMMAND:
+        return frozenset({Guess.ELLIPSIS})  # 'wrap it around it'
     return frozenset({Guess.THOSE} if vague else {Guess.BARE} if _can_be_verb(subject) else ())
 
 

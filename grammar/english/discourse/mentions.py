@@ -220,7 +220,8 @@ class Mentions(Drafting, ABC):
         for adjective in phrase.adjectives:
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
             placed = adjective.word in ("high", "low")  # 'the highest drawer' is not the tallest
-            if new and adjective.degree is Degree.SUPERLATIVE and name is not None and not entity.members and not placed:
+            best = adjective.degree is Degree.SUPERLATIVE and name is not None and not placed
+            if new and best and name is not None and not entity.members:
                 self._add(name, (entity,), (), how=replace(plain, span=phrase.span))
         if new and entity.members:
             self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.confidence import Guess
+from deixis.grammar.english.confidence import UNJOINED, Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
 from deixis.grammar.english.discourse.mentions import SUPERLATIVES
 from deixis.grammar.english.discourse.references import POLES, Focus
@@ -57,7 +57,10 @@ NOT_STATES = frozenset(
 
 _DETACHED = frozenset({"lid", "cap"})
 """Parts that are taken off their thing, and then have a place of their own."""
-_APART = frozenset({"on", "inside", "under", "next_to", "near", "behind", "in_front", "left", "right", "above", "below"})
+_APART = frozenset(
+    {"on", "inside", "under", "next_to", "near", "behind", "in_front", "left", "right", "above", "below"}
+)
+"""Relations to another thing that a part can have while its own thing is elsewhere."""
 
 
 class Statements(Relations):
@@ -75,9 +78,9 @@ class Statements(Relations):
         if subject.itself.absent and predicate.arguments and self.how.positive and not self.how.past:
             self._found_elsewhere(subject.itself)
         if subject.role is Role.PART and subject.noun in _DETACHED:
-            apart = NounPhrase(self.how.span, head=subject.noun, determiner="the")
-            lies = relation in _APART and bool(predicate.arguments)
-            thing = self.references.find(apart) if lies else self.references.earlier(apart)
+            own = NounPhrase(self.how.span, head=subject.noun, determiner="the")
+            moved = relation in _APART and bool(predicate.arguments)
+            thing = self.references.find(own) if moved else self.references.earlier(own)
             subject = thing or subject  # 'the lid of the jar is on the tray'
         if subject.role is Role.PART and subject.whole is not None:
             if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
@@ -155,7 +158,7 @@ class Statements(Relations):
             value = None
         elif value is None or relation in ("other", "position") or value in NOT_STATES:
             return
-        elif relation == "state" and "being" in predicate.adverbs:
+        elif relation == "state" and ("being" in predicate.adverbs or not UNJOINED.isdisjoint(self.how.guesses)):
             return  # 'it is being cleaned' tells what happens, and not a state
         self._add(relation, (subject,), (), value=value)
 

@@ -70,9 +70,9 @@ _CONCRETE = word_set(
     " instrument ornament garment monument cement parchment pigment compartment document equipment element apartment"
     " arrangement movement ointment pavement basement casement segment fragment filament ligament attachment implement"
     " battlement pediment tenement condiment monument refreshment liniment embankment escarpment complement sediment"
-    " settlement encampment allotment fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
+    " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
-    " mechanism organism position"
+    " mechanism organism position settlement allotment"
 )
 """Words with the endings of abstract nouns that name things."""
 _ADVERBS_NOT = word_set(
