@@ -490,6 +490,9 @@ class NounFinder:
             return False  # 'the one in the middle holds buttons'
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
+        tools = form.form == "s" and form.lemma in _PLURALS_LIKE_VERBS and "with" in self.norms[max(0, at - 3) : at]
+        if tools and not any(self.is_determiner(k) for k in range(max(0, at - 3), at)):
+            return True  # 'fix it with long wood screws in the holes'
         accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
         if accompanied and form.form == "s" and self._nouns.singular(norm)[1]:
             return not (spatial and self._awaits_verb(at - 3))  # 'with the cotton rolls behind it'

@@ -316,6 +316,61 @@ def side_up(chunks: list[Chunk], at: int) -> Run | None:
     return at + 3, None
 
 
+def agent(chunks: list[Chunk], at: int) -> Run | None:
+    """Find by whom or by what something is done: *it is fixed to the frame by a bolt*, but not *placed by the door*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the preposition.
+
+    Returns
+    -------
+    tuple or None
+        End of the phrase, and None; None for another phrase.
+    """
+    by = chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "by"
+    if not by or type_at(chunks, at + 1) != "NP":
+        return None
+    first = max((k + 1 for k in range(at) if chunks[k].type in JOINT_TYPES), default=0)
+    verbs = [chunk.value for chunk in chunks[first:at] if chunk.type in FINITE | {"PART", "TPART", "PUT"}]
+    done = bool(verbs) and isinstance(verbs[-1], VerbGroup) and verbs[-1].form in ("past", "participle")
+    placed = type_at(chunks, at - 1) in ("NP", "ADV") and done and verbs[-1].lemma in _DONE_BY_MEANS
+    if not placed or not any(chunk.type == "PREP" for chunk in chunks[first:at]):
+        return None
+    end = at + 2
+    while [type_at(chunks, end), type_at(chunks, end + 1)] == ["OF", "NP"]:
+        end += 2
+    _leave_out(chunks[at:end], "by whom or by what something is done is not where it is")
+    return end, None
+
+
+def omission(chunks: list[Chunk], at: int) -> Run | None:
+    """Find what is not done: *slide the poles in without attaching them to the base*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of *without*.
+
+    Returns
+    -------
+    tuple or None
+        End of the phrase, and None; None if no participle follows.
+    """
+    named = chunks[at].type == "UNKNOWN" and chunks[at].value == "without" and at > 0
+    group = chunks[at + 1].value if named and type_at(chunks, at + 1) in ("TPART", "PART") else None
+    if not isinstance(group, VerbGroup) or group.form != "ing":
+        return None
+    end = end_before(chunks, at + 1, _BREAKS)
+    _leave_out(chunks[at:end], "what is not done does not say where something is")
+    return end, None
+
+
 def layer(chunks: list[Chunk], at: int) -> Run | None:
     """Find a command to make a layer or a group somewhere, which is put there: *make a thin layer on the gravel*.
 
@@ -375,11 +430,16 @@ _LAYERS = word_set("layer bed row line ring circle pile heap mound stack border 
 """Nouns of what is made at its place."""
 _USING = word_set("use need want like access reach handle")
 """Verbs of a person that tell things apart, and not where they are."""
+_DONE_BY_MEANS = word_set(
+    "attach connect fix fasten secure join link tie bolt screw nail glue tape strap clip clamp pin hook tuck roll fold"
+    " wrap cover spread pour lower raise lift pull push insert install mount suspend"
+)
+"""Verbs of actions after whose participles *by* names an agent or a tool."""
 _STEMS = _CAUSING | {lemma.removesuffix("e") for lemma in _CAUSING}
 """Such verbs, and their stems before *-ing* where no table has the verb."""
 
 FINDERS = (
     framing, manner, consequence, compared_quality, examples, side_up, first_of_two_commands, used_things, followers,
-    layer, replacement,
+    agent, omission, layer, replacement,
 )  # fmt: skip
 """Finders of phrases beside the statement, in the order in which they are used."""

@@ -164,7 +164,10 @@ class Mentions(Drafting, ABC):
             self._say(besides, phrase.predicates, phrase, focus=False)
         outside = tuple(
             p for p in phrase.predicates
-            if besides is not None and ((not new and self._bears(entity, p)) or _shares_support(phrase, relation, p))
+            if besides is not None and (
+                (not new and self._bears(entity, p)) or _shares_support(phrase, relation, p)
+                or (p.relation == "opposite" and relation in ("in_front", "behind") and len(p.arguments) == 1)
+            )  # 'put it in front of the chair on the opposite side of the lamp'
         )  # fmt: skip
         if outside and besides is not None:  # 'on the desk to the left of the lamp' of a lamp that is on the desk
             self._say(besides, outside, phrase, focus=False)
@@ -293,6 +296,11 @@ class Mentions(Drafting, ABC):
             self.references.named = others
         if any(p.relation == "one_each" for p in predicates):
             self.how = replace(self.how, quantifier="each")
+            sides = [p for p in predicates if p.relation != "one_each"]
+            if 1 < len(sides) == entity.size and not any(p.arguments for p in sides):
+                for leaf, side in zip(entity.leaves(), sides, strict=True):  # 'to the left and right respectively'
+                    self._say(leaf, (side,), phrase, focus=False)
+                predicates = ()
         outer = self.how
         places = {p.part for p in predicates if p.relation in ("part", "edge") and not p.arguments and p.part}
         if any(p.relation == "row" for p in predicates):  # 'from left to right across the stage are …'
