@@ -42,6 +42,8 @@ def asserted(text: str) -> list[str]:
         ("Screwdrivers go in the drawer right beneath the lid.",
          ["under(drawer, lid)", "inside(screwdrivers, drawer)"]),
         ("Place the jar on a flat, stable slab.", ["on(jar, stable_slab)"]),
+        ("A probe and a mirror are commonly put on the cloth.", ["on(probe, cloth)", "on(mirror, cloth)"]),
+        ("Put the spears on the corresponding spaces.", ["on(spears, spaces)"]),
         ("Your speaker should be above your wall display.", ["above(speaker, wall_display)"]),
     ],
 )  # fmt: skip
@@ -124,6 +126,14 @@ def test_places_beside_things_on_the_same_support(text: str, expected: list[str]
         ("This light creates a glow behind the vase. The cup is on the jar.", ["on(cup, jar)"]),
         ("Tools are kept in the highest drawers.", ["inside(tools, drawers)"]),
         ("Turn the label away from you.", ["facing(label, 'away')"]),
+        ("The crate is bolted to the frame by a bracket.", ["touching(crate, frame)"]),
+        ("The towel is tucked behind the box by the nurse.", ["behind(towel, box)"]),
+        ("The cup is placed by the lamp.", ["near(cup, lamp)"]),
+        ("Put the cup behind the jug without placing the spoon next to it.", ["behind(cup, jug)"]),
+        ("The chest is behind the door, not covered by a cloth.", ["behind(chest, door)", "not on(cloth, chest)"]),
+        ("Put a three drawer unit behind the box.", ["behind(drawer_unit, box)"]),
+        ("Stand the lamp in front of the chair on the opposite side of the vase.",
+         ["opposite(lamp, vase)", "in_front(lamp, chair)"]),
         ("Place the jar on a clean cloth with the inside facing up.", ["on(jar, cloth)", "facing(jar, 'up')"]),
     ],
 )  # fmt: skip
