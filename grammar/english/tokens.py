@@ -306,6 +306,22 @@ def _read_levels(words: list[Word]) -> None:
             del words[i + 1]
 
 
+def _read_opposites(words: list[Word]) -> None:
+    """Read *at opposite ends of the shelf* as *at both ends of the shelf*."""
+    for i in range(1, len(words) - 1):
+        facing = words[i].norm == "opposite" and words[i + 1].norm in ("ends", "edges", "corners")
+        if facing and words[i - 1].norm in ("at", "on", "in", "from", "near"):
+            words[i].norm = "both"
+
+
+def _read_and_or(words: list[Word]) -> None:
+    """Read *and/or*, which are three marks, as one *or*."""
+    for i in range(len(words) - 3, -1, -1):
+        if [word.norm for word in words[i : i + 3]] == ["and", "/", "or"]:
+            words[i].norm, words[i].end = "or", words[i + 2].end
+            del words[i + 1 : i + 3]
+
+
 def _read_setups(words: list[Word]) -> None:
     """Read *in a two-light set up* as one noun, and leave out *built-in* before a place."""
     for i in range(len(words) - 2, 1, -1):
@@ -680,6 +696,8 @@ def words_of(text: str, span: Span) -> list[Word]:
                 found.append(Word(raw, ":", start, end, False))
             elif unicodedata.category(raw)[0] in "SMC" and raw not in "<>=":
                 continue  # a pictograph, or a mark of one
+            elif raw in _LENGTH_MARKS and found and _is_length(text, span, found[-1], start):
+                found[-1].norm, found[-1].end = f"{found[-1].norm}-{_LENGTH_MARKS[raw]}", end
             elif raw == "." and found and found[-1].norm in _ABBREVIATIONS and found[-1].end == start and end < span[1]:
                 continue
             elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|[]":
@@ -695,6 +713,8 @@ def words_of(text: str, span: Span) -> list[Word]:
     _join_asides(text, found)
     _read_hours(found)
     _read_levels(found)
+    _read_opposites(found)
+    _read_and_or(found)
     _read_setups(found)
     _without_settings(found)
     _read_facing_commands(found)
@@ -730,6 +750,18 @@ def words_of(text: str, span: Span) -> list[Word]:
             found[i].norm = "it"
             found.insert(i + 1, Word(found[i].text, "'s", found[i].start, found[i].end, False))
     return found
+
+
+_LENGTH_MARKS = {"'": "foot", "\u2019": "foot", "\u2032": "foot", '"': "inch", "\u201d": "inch", "\u2033": "inch"}
+"""Marks of feet and inches after a number, by their unit."""
+
+
+def _is_length(text: str, span: tuple[int, int], number: Word, at: int) -> bool:
+    """Return True for the mark of *the 8' boards*, and not for the end of a quotation that was begun before."""
+    mark = text[at]
+    opened = sum(text[span[0] : at].count(quote) for quote in {mark, "\u201c" if mark in '"\u201d' else mark})
+    apostrophes = len(re.findall(rf"(?<=\w){mark}(?=\w)", text[span[0] : at]))
+    return number.norm.isdigit() and number.end == at and (opened - apostrophes) % 2 == 0
 
 
 def _folded(raw: str) -> str:

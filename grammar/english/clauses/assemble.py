@@ -622,6 +622,9 @@ class Assembly:
         phrase = thing.phrase
         *before, last = phrase.members or (phrase,)
         shared = () if any(member.predicates for member in before) else last.predicates
+        if not before and last.of is not None and last.of.predicates:  # 'he puts the cap of the jar on it'
+            shared = (*last.of.predicates, *shared)
+            phrase = replace(phrase, of=replace(last.of, predicates=()))
         if shared and before:  # 'I keep the jug and the bowl on a tray': both are on it
             phrase = replace(phrase, members=(*before, replace(last, predicates=())))
         elif shared:

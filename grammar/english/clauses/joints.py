@@ -146,6 +146,8 @@ def _cuts(
         return _inversion_follows(types, end)  # 'and 10 cm behind it a bottle'
     if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(chunks, types, end):
         return True
+    if following == "PREP" and "AND" in kinds and _fronted_command(types, end):
+        return True  # 'lay a fork on the left, and to the right of it put a knife'
     if following == "PREP" and "AND" in kinds and _verbless_inversion(types, end):
         return True  # 'the brush, and behind it the cup'
     if labelled and kinds == {"COMMA"} and following in PREDICATES:
@@ -162,6 +164,13 @@ def _cuts(
 def _absolute_before(types: list[str], start: int, at: int) -> bool:
     """Return True for a thing with its place and no verb, as in a list of such: *A sits at X, B at Y, C at Z*."""
     return types[start] == "NP" and types[start + 1] in PREDICATES - {"WITH", "ADJP"} and at > start + 1
+
+
+def _fronted_command(types: list[str], at: int) -> bool:
+    """Return True for places and then a command: *in the corner next to it put …*."""
+    while types[at : at + 2] in (["PREP", "NP"], ["OF", "NP"]):
+        at += 2
+    return types[at : at + 2] == ["PUT", "NP"]
 
 
 def _verbless_inversion(types: list[str], at: int) -> bool:

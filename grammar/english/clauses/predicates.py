@@ -586,6 +586,9 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     ):
         value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
         relation = "facing"
+    elif lemma in _ROTATING and relation == "far":
+        value = Adjective("away", "position", Degree.PLAIN, following.span)
+        relation, arguments = "facing", ()  # 'turn the label away from you'
     elif lemma in _ROTATING and relation in ("to", "facing", "pointing") and arguments:
         relation = "facing"  # 'its opening turned to the fire'
     elif relation == "through" and lemma in _PASSING:
@@ -639,7 +642,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif lemma in _TELLING and relation in ("inside", "on", "at"):
         relation = "through"  # 'mentioned in the catalogue'
     elif lemma in ("cover", "coat", "drape") and relation == "with":
-        return replace(following, relation="on", reversed=True, span=span)
+        denied = following.positive is not marker.positive
+        return replace(following, relation="on", reversed=True, span=span, positive=not denied)
     elif relation == "above" and lemma in _COVERING and arguments and arguments[0].head in _OUTER and arguments[0].of:
         relation, arguments = "on", (arguments[0].of,)  # 'draped over the back of the chair'
     elif relation == "above" and lemma == "hang" and arguments and _is_draped(arguments[0]) and arguments[0].of:
@@ -655,7 +659,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif relation == "by" and lemma not in _PASSIVES and lemma not in _STAYING:
         relation = "through"  # 'sorted by price', 'hidden by the lamp' name no place
     elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
-        return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
+        denied = following.positive is not marker.positive  # 'behind the door, not covered by a cloth'
+        return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span, positive=not denied)
     positive = following.positive if marker.positive else not following.positive
     left = next((place for word, place in AWAY_FROM.items() if word in following.adverbs), None)
     if relation == "from" and lemma in _KEEPING and left and last_word(arguments[0].head) not in NOT_PLACES:

@@ -70,6 +70,8 @@ LABEL = re.compile(
 """Words after a label of what follows: *towel first: fold it*."""
 ITEM_LABEL = re.compile(r"([A-Z][\w'\u2019-]*(?:\s+[\w'\u2019-]+){0,2})\s*:\s+\w")
 """Label of an item and what is said about it: *Soup spoon: a large and round spoon.*"""
+AGAIN = re.compile(r"\b(?:and|then|,)\s+(?:then\s+)?\w+\s+(?:it|them)\b", re.IGNORECASE)
+"""Second command about the object of the first: *take a cup and put it on the tray*."""
 ABOUT_IT = re.compile(r"\s*(?:it|they)\s", re.IGNORECASE)
 MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
 """Properties that a part and its whole need not share."""
@@ -190,6 +192,8 @@ class Discourse(Statements):
             return
         clauses = self.sentences[sentence].clauses
         taken = phrase.determiner == "the" and bool(phrase.head or phrase.pronoun == "one") and not phrase.members
+        again = AGAIN.search(self.text[phrase.span[1] : self.end]) is not None
+        taken = taken or (again and bool(phrase.head) and not phrase.members and phrase.determiner != "no")
         if taken and not phrase.predicates and clauses and phrase.span[0] < clauses[-1].span[0]:
             handled = self._introduce(phrase)  # 'take the red one and put it behind the slit'
             if handled is not None:
@@ -427,7 +431,8 @@ class Discourse(Statements):
             and self._of_last(predicates, subject)
         ):
             return
-        if last_word(subject.head) in GENERAL and any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives):
+        best = any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives)
+        if last_word(subject.head) in GENERAL and best and not subject.plural:
             self._superlative_apposition(subject, predicates)
             return
         if subject.owner is not None and subject.owner.pronoun == "it" and _is_put_beside(subject, predicates):
@@ -660,6 +665,9 @@ def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:
     if subject is None:
         return frozenset()
     vague = subject.pronoun in ("these", "those") and not (subject.head or subject.of or subject.adjectives)
+    twice = subject.pronoun == "it" and any(a.pronoun == "it" for p in clause.predicates[:1] for a in p.arguments)
+    if twice and clause.mood is Mood.COMMAND:
+        return frozenset({Guess.ELLIPSIS})  # 'wrap it around it'
     return frozenset({Guess.THOSE} if vague else {Guess.BARE} if _can_be_verb(subject) else ())
 
 

@@ -237,6 +237,10 @@ class References:
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
             return self.find(inner, relation, besides)
         earlier = self._carrier(phrase, relation, besides) or self._earlier(phrase)
+        own = earlier is not None and besides is not None and earlier in [leaf.itself for leaf in besides.leaves()]
+        if own and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
+            others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
+            earlier = next((e for e in others if not _conflicting(e, phrase)), None)  # 'the sleeping bag is in the bag'
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
             other = bool(phrase.adjectives) and besides.noun != noun  # 'the oat milk behind the whole milk'
@@ -249,8 +253,9 @@ class References:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
         several = several and not any(a.dimension == "colour" for a in phrase.adjectives)
-        if several and last in GENERAL - {"piece"} and noun == last:
-            return None  # 'the following items'
+        described = any(a.dimension != "other" for a in phrase.adjectives)
+        if several and last in GENERAL - {"piece"} and noun == last and not described:
+            return None  # 'the following items', but 'the heavy items'
         if phrase.owner is not None:
             self.find(phrase.owner, relation, besides)
         return self._new(phrase, Role.SURROUNDING if noun in SURROUNDINGS else Role.THING)
@@ -392,6 +397,10 @@ class References:
             kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
             if kind and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'towels' after 'a towel'
+            one = not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
+            apart = any(a.degree is Degree.PLAIN and a.rank is None for a in phrase.adjectives)
+            if one and apart and not entity.members and not _agreement(entity, phrase):
+                continue  # 'the shallow drawer' after 'the bottom drawers'
             coloured = {("colour", a.word) for a in phrase.adjectives if a.dimension == "colour"}
             if coloured and entity.members and phrase.plural and not any(
                 coloured & leaf.adjectives for leaf in entity.leaves()
@@ -399,6 +408,10 @@ class References:
                 continue  # 'the white pieces' after '12 pieces'
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
+            bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
+            longer = entity.noun != phrase.head and not entity.was_called(phrase.head)
+            if bare and longer and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'folded napkins' after 'the paper napkins'
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (
