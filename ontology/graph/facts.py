@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from deixis.arguments import require_fields
 from deixis.errors import GraphError
 from deixis.ontology.relations.relation import Relation
+from deixis.printable import visible_line
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -28,7 +29,7 @@ class Source:
         return f"{self.file}:{self.line}:{self.column}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Fact:
     """A statement that the subject stands in one of the relations to the object, or, if not ``positive``, in none.
 
@@ -43,6 +44,8 @@ class Fact:
     >>> print(Fact("fork", (r["left"], r["top_left"]), "plate", weight=0.8))
     left or top_left(fork, plate)
     >>> fact = Fact("fork", (r["left"],), "plate", weight=0.2)
+    >>> fact
+    <Fact rarely left(fork, plate); weight 0.2>
     >>> fact.rare, fact.affirmed_weight, fact.plain, fact.relation_set == r["left"].bit
     (True, 0.8, False, True)
     """
@@ -74,6 +77,12 @@ class Fact:
             and type(self.weight) is float
             and (self.source is None or type(self.source) is Source)
         )
+
+    def __repr__(self) -> str:
+        notes = ["optional"] if self.optional else []
+        notes += [f"weight {self.weight:g}"] if self.weight != 1 else []
+        notes += [str(self.source)] if self.source is not None else []
+        return visible_line(f"<Fact {'; '.join([str(self), *notes])}>")
 
     def __str__(self) -> str:
         names = " or ".join(relation.name for relation in self.relations)
