@@ -13,10 +13,16 @@ from deixis.perception.detection.outline import oriented_box
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.table.observation import Table
 from deixis.perception.tracking.things.revolution import circle_around
 
 MIN_TURN = np.deg2rad(3.0)
 """Minimum angle in radians between two frames of a table at which a box is enlarged to hold the turned box."""
+
+
+MAX_TABLE_SHARE = 0.6
+"""Largest share of the points of a detected object that may be the table's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +37,76 @@ class Model:
     half: NDArray[np.float64]
     oriented: OrientedBox
     pose: NDArray[np.float64]
+
+
+def model_on_table(
+    found: Detection,
+    cloud: PointCloud,
+    points: NDArray[np.intp],
+    k: int,
+    table: Table,
+    back: NDArray[np.float64],
+    settings: TrackingSettings,
+) -> Model:
+    """Return the model of one object of a detection, without the points of the table beside it.
+
+    Parameters
+    ----------
+    found
+        The detection.
+    cloud
+        Cloud of the frame.
+    points
+        Indices (n,) of the points of the object.
+    k
+        Number of the object.
+    table
+        The table, with its colours.
+    back
+        Transform (4, 4) from the frame of the cloud to the tracker's.
+    settings
+        Options of the tracker.
+
+    Returns
+    -------
+    Model
+        Points, boxes and pose.
+    """
+    own = without_table(cloud, points, table, back, settings.tolerance)
+    change = back @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
+    return model_of(found, cloud, own, k, change, settings.detection.outlines)
+
+
+def without_table(
+    cloud: PointCloud, points: NDArray[np.intp], table: Table, back: NDArray[np.float64], tolerance: float
+) -> NDArray[np.intp]:
+    """Return the points of a detected object that do not show the table beside it, as between the tines of a fork.
+
+    These are as low as the table and have its colours; an object of which little else is left keeps all.
+
+    Parameters
+    ----------
+    cloud
+        Cloud of the frame.
+    points
+        Indices (n,) of the points of the object.
+    table
+        The table, with its colours.
+    back
+        Transform (4, 4) from the frame of the cloud to the tracker's.
+    tolerance
+        Height in metres up to which a point may be the table's.
+
+    Returns
+    -------
+    ndarray
+        Indices of shape (m,) of the points that are left.
+    """
+    if cloud.colours is None:
+        return points
+    heights = cloud.points[points] @ back[2, :3] + back[2, 3]
+    low = (heights < tolerance) & table.colours.include(cloud.colours[points].astype(np.float32))
+    return points[~low] if low.mean() < MAX_TABLE_SHARE else points
 
 
 def model_of(

@@ -1,0 +1,38 @@
+"""Things that move: with what carries them, and until they are gone."""
+
+import numpy as np
+import pytest
+from first_looks import HALF, MUG, PLATE, first_look
+
+from deixis.perception.tracking.things.following import carry, let_go
+from deixis.perception.tracking.things.hands import Hands
+from deixis.perception.tracking.things.rest import start
+
+pytest.importorskip("open3d")
+
+
+@pytest.mark.parametrize(("is_out_of_view", "gone_at"), [(False, 1.0), (True, 3.5)])
+def test_thing_carried_out_of_the_image_is_kept_longer(is_out_of_view: bool, gone_at: float) -> None:
+    look = first_look([PLATE, MUG])
+    thing = next(iter(look.things))
+    start(thing, look.things, look.table.reference)
+    thing.lost()
+    thing.out_of_view = is_out_of_view
+    gone = [at for at in np.arange(0.5, 4.0, 0.5) if let_go(look.things, at, -np.inf, HALF)]
+    assert gone == [gone_at] and thing not in look.things
+
+
+def test_thing_that_is_not_found_moves_with_what_it_lies_on() -> None:
+    look = first_look([PLATE, MUG])
+    plate, mug = look.things
+    mug.pose = mug.pose.copy()
+    mug.pose[:3, 3] = plate.pose[:3, 3] + (0.02, 0.01, 0.05)
+    mug._rest = mug.pose
+    start(plate, look.things, look.table.reference)
+    assert mug.carrier is plate
+    start(mug, look.things, look.table.reference)
+    mug.lost()
+    plate.pose = plate.pose.copy()
+    plate.pose[:3, 3] += 0.1, 0.2, 0.05
+    carry(mug, Hands())
+    assert mug.pose[:3, 3] - plate.pose[:3, 3] == pytest.approx([0.02, 0.01, 0.05])
