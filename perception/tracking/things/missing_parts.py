@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from deixis.perception.scene import turned_axes
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
-from deixis.perception.tracking.things.pipeline import Pipeline, likeness
+from deixis.perception.tracking.things.likeness import likeness
+from deixis.perception.tracking.things.pipeline import Pipeline
 
 FLAT = 0.04
 """Height in metres below which a thing may have parts that are lost in the noise of the table; a spoon is 0.03 high."""

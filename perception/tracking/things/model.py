@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection
-from deixis.perception.detection.outline import oriented_box
+from deixis.perception.detection.outline import Circle, oriented_box, upright_box
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.scene import OrientedBox
@@ -159,3 +159,71 @@ def model_of(
     oriented = OrientedBox(tuple((np.array(around.centre) - middle).tolist()), around.yaw, around.extents)
     colours = None if cloud.colours is None else cloud.colours[points]
     return Model(PointCloud((own - middle).astype(np.float32), colours), half, oriented, pose)
+
+
+def extended(
+    model: Model, points: NDArray[np.float64], colours: NDArray[np.float32], settings: OutlineSettings
+) -> Model:
+    """Return the model of a thing with more points, and with the boxes around all of them.
+
+    The box of an upright round thing keeps its hidden back, such as that of a mug whose handle comes into view.
+
+    Parameters
+    ----------
+    model
+        Points, boxes and pose so far.
+    points
+        Points of shape (n, 3) in the table's frame, in metres.
+    colours
+        Their colours, shape (n, 3).
+    settings
+        Share of outermost points that are noise.
+
+    Returns
+    -------
+    Model
+        Model whose origin is the middle of the new box.
+    """
+    turn = model.pose[:3, :3]
+    own = model.cloud.points.astype(np.float64) @ turn.T + model.pose[:3, 3]
+    everything = np.concatenate([own, points])
+    circle = circle_around(everything) or circle_around(own)
+    box = upright_box(everything, settings, circle)
+    around = oriented_box(everything, settings, circle)
+    middle = box.mean(axis=0)
+    yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+    local = (everything - middle) @ turn
+    if yaw != 0:  # the sides of the box lie along the thing's own axes
+        box = np.stack([local.min(axis=0), local.max(axis=0)])
+        if circle is not None:
+            box = Circle(circle.centre - middle[:2], circle.radius).turned(turn[:2, :2].T).enclosed_by(box)
+    tints = None
+    if model.cloud.colours is not None:
+        tints = np.concatenate([model.cloud.colours, np.clip(colours, 0, 255).astype(np.uint8)])
+    pose = model.pose.copy()
+    pose[:3, 3] = middle
+    centre = tuple(((np.array(around.centre) - middle) @ turn).tolist())
+    oriented = OrientedBox(centre, around.yaw - yaw, around.extents)
+    return Model(PointCloud(local.astype(np.float32), tints), (box[1] - box[0]) / 2, oriented, pose)
+
+
+def standing(model: Model) -> Model:
+    """Return the model of a thing with its boxes extended down to the table, on which it stands with a hidden foot.
+
+    Parameters
+    ----------
+    model
+        Points, boxes and pose of what is seen.
+
+    Returns
+    -------
+    Model
+        Model with the same points.
+    """
+    top = float(model.pose[2, 3] + model.oriented.centre[2] + model.oriented.extents[2] / 2)
+    x, y, _ = model.oriented.centre
+    points, pose = model.cloud.points.copy(), model.pose.copy()
+    points[:, 2] += np.float32(model.pose[2, 3] - top / 2)
+    pose[2, 3] = top / 2
+    oriented = OrientedBox((x, y, 0.0), model.oriented.yaw, (*model.oriented.extents[:2], top))
+    return Model(PointCloud(points, model.cloud.colours), np.array([*model.half[:2], top / 2]), oriented, pose)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from flat_tables import BLUE, KNIFE, OPTICS, SHADED, SHAPE, STEEL, WHITE, WOOD, Table, lay, table, thing_at, view
 
-from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage
 from deixis.perception.tracking.settings import TrackingSettings
@@ -215,20 +214,3 @@ def test_plate_that_comes_into_view_is_not_a_part_of_a_napkin() -> None:
     on.owner[25:40, 45:50] = 1  # of the plate, but within the margin of the napkin's box
     assert len(revealed_part(napkin, [], on.reference, view()))
     assert not len(revealed_part(napkin, [plate], on.reference, view()))
-
-
-@pytest.mark.parametrize(("yaw", "half"), [(0.0, (0.058, 0.04)), (0.5, (0.054, 0.04))])
-def test_handle_that_comes_into_view_keeps_the_back(yaw: float, half: tuple[float, float]) -> None:
-    rng = np.random.default_rng(4)
-    angle, z = rng.uniform(np.pi, 2 * np.pi, 3000), rng.uniform(0.0, 0.1, 3000)
-    front = np.column_stack([0.04 * np.cos(angle), 0.04 * np.sin(angle), z])
-    body = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.08, 0.08, 0.1))
-    pose = np.eye(4)
-    pose[:2, :2], pose[2, 3] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]], 0.05
-    own = (front - pose[:3, 3]) @ pose[:3, :3]
-    cloud = PointCloud(own.astype(np.float32), np.full((len(front), 3), BLUE, np.uint8))
-    mug = Pipeline("t1", 1, cloud, np.array([0.04, 0.04, 0.05]), body, pose, 0.0, TrackingSettings())
-    handle = np.array([0.04, -0.004, 0.03]) + rng.uniform(0, [0.036, 0.008, 0.05], (300, 3))
-    mug.extend(handle, np.tile(BLUE, (300, 1)).astype(np.float32), TrackingSettings().detection.outlines)
-    assert mug.pose[:2, 3] == pytest.approx((0.018, 0.0), abs=0.003)
-    assert mug.half[:2] == pytest.approx(half, abs=0.003)
