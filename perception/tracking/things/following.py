@@ -29,6 +29,10 @@ nothing hides where it rested, for this comparison, and the minimum share that i
 MOVED_FIT = 0.6
 """Minimum agreement elsewhere at which a thing whose place is mostly hidden has moved."""
 
+BY_HAND = 1.5
+"""Time in seconds after a hand was seen in which a thing whose place is mostly hidden may have moved; any hand may have
+come and gone between two frames that are farther apart."""
+
 BACK, BACK_AFTER = 0.7, 0.3
 """Minimum agreement at which a thing that was not found is again where it rested, and how long it was not found."""
 
@@ -155,7 +159,7 @@ def follow(
     for thing in moving:
         if not thing.found:
             carry(thing, hands)
-    for sighting in workers.each(sighted, moving):
+    for sighting in list(workers.each(sighted, moving)):  # before one of them claims pixels that another compares
         thing = sighting.thing
         if not thing.active:  # it was set down with what it lies on
             continue
@@ -182,12 +186,14 @@ def follow(
             others.ravel()[free[thing.contains(points, settings.margin)]] = True
     left = ~others.ravel()[free]
     points, tints = points[left], tints[left]
-    for sighting in workers.each(sighted, doubtful):
+    is_by_hand = seen.at - seen.hand_at < BY_HAND or seconds > BY_HAND  # nothing moves by itself
+    for sighting in list(workers.each(sighted, doubtful)):
         thing = sighting.thing
         way = float(np.linalg.norm(sighting.found.place - thing.pose[:3, 3]))
         is_elsewhere = MIN_WAY < way < settings.jump and sighting.fit > MOVED_FIT
         if (
-            is_elsewhere
+            is_by_hand
+            and is_elsewhere
             and sighting.visible > settings.visible
             and not _is_as_likely_at_rest(sighting, table, seen, same)
         ):

@@ -21,6 +21,10 @@ MIN_TURN = np.deg2rad(3.0)
 """Minimum angle in radians between two frames of a table at which a box is enlarged to hold the turned box."""
 
 
+MIN_ELONGATION = 2.0
+"""Minimum ratio of the sides of an object whose boxes hold just its own points; those of others may have a hidden part
+that completes a circle."""
+
 MAX_TABLE_SHARE = 0.6
 """Largest share of the points of a detected object that may be the table's."""
 
@@ -119,6 +123,9 @@ def model_of(
 ) -> Model:
     """Return the model of one object of a detection; that of an upright round thing includes its hidden back.
 
+    The detection's own boxes may hold more than the points of the object, those of the table beside it or a hidden part
+    of a circle. For an elongated object, only its points count.
+
     Parameters
     ----------
     found
@@ -150,7 +157,11 @@ def model_of(
         half = np.array([cosine * half[0] + sine * half[1], sine * half[0] + cosine * half[1], half[2]])
     around = OrientedBox(tuple(centre.tolist()), box.yaw + turn, box.extents)
     circle = circle_around(own)
-    if circle is not None:  # its back is hidden
+    if box.extents[0] > MIN_ELONGATION * box.extents[1]:  # points beside it that are not its own enlarge its boxes
+        corners = upright_box(own, outlines)
+        middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
+        around = oriented_box(own, outlines)
+    elif circle is not None:  # its back is hidden
         corners = circle.enclosed_by(np.stack([middle - half, middle + half]))
         middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
         around = oriented_box(own, outlines, circle)
@@ -166,7 +177,8 @@ def extended(
 ) -> Model:
     """Return the model of a thing with more points, and with the boxes around all of them.
 
-    The box of an upright round thing keeps its hidden back, such as that of a mug whose handle comes into view.
+    The box of an upright round thing keeps its hidden back, such as that of a mug whose handle comes into view, and a
+    thing that stands on the table keeps its foot.
 
     Parameters
     ----------
@@ -190,11 +202,14 @@ def extended(
     circle = circle_around(everything) or circle_around(own)
     box = upright_box(everything, settings, circle)
     around = oriented_box(everything, settings, circle)
+    bottom = max(float(model.pose[2, 3] - model.half[2]), 0.0)
+    box[0, 2], around = min(box[0, 2], bottom), _down_to(bottom, around)
     middle = box.mean(axis=0)
     yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
     local = (everything - middle) @ turn
     if yaw != 0:  # the sides of the box lie along the thing's own axes
         box = np.stack([local.min(axis=0), local.max(axis=0)])
+        box[0, 2] = min(box[0, 2], bottom - middle[2])
         if circle is not None:
             box = Circle(circle.centre - middle[:2], circle.radius).turned(turn[:2, :2].T).enclosed_by(box)
     tints = None
@@ -227,3 +242,10 @@ def standing(model: Model) -> Model:
     pose[2, 3] = top / 2
     oriented = OrientedBox((x, y, 0.0), model.oriented.yaw, (*model.oriented.extents[:2], top))
     return Model(PointCloud(points, model.cloud.colours), np.array([*model.half[:2], top / 2]), oriented, pose)
+
+
+def _down_to(bottom: float, box: OrientedBox) -> OrientedBox:
+    """Return a box that reaches down to a height at least."""
+    (x, y, z), (length, width, height) = box.centre, box.extents
+    top, low = z + height / 2, min(z - height / 2, bottom)
+    return OrientedBox((x, y, (low + top) / 2), box.yaw, (length, width, top - low))

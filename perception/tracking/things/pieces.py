@@ -149,7 +149,7 @@ def join_piece(
 
 
 def let_stand(new: Collection[Pipeline], things: Things, image: FrameImage, view: TableView) -> None:
-    """Extend new things down to the table whose feet are hidden.
+    """Extend new things down to the table whose feet are hidden, or too near the table to be told from its noise.
 
     Parameters
     ----------
@@ -162,8 +162,28 @@ def let_stand(new: Collection[Pipeline], things: Things, image: FrameImage, view
     """
     resting = things.resting
     for thing in resting:
-        if thing in new and stands_behind(thing, resting, image, view):
+        if thing in new and (stands_on_table(thing, resting) or stands_behind(thing, resting, image, view)):
             thing.stand()
+
+
+def stands_on_table(thing: Pipeline, others: Iterable[Pipeline]) -> bool:
+    """Return True if a high thing ends a little above the table, whose noise hides its lowest points.
+
+    Parameters
+    ----------
+    thing
+        Thing at rest.
+    others
+        The other things at rest.
+
+    Returns
+    -------
+    bool
+        False for a flat thing, whose height may be that of the noise, and for one that lies on another thing.
+    """
+    bottom = float(thing.placed_corners[:, 2].min())
+    is_high = thing.oriented.extents[2] > FLAT
+    return is_high and 0.0 < bottom < MIN_LIFTED and not _lies_on_another(thing, others)
 
 
 def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage, view: TableView) -> bool:
@@ -186,10 +206,7 @@ def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage
     """
     corners = thing.placed_corners
     middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
-    if bottom < MIN_LIFTED:
-        return False
-    below = np.array([(*middle[:2], z) for z in np.arange(bottom, bottom - SUPPORT, -AXIS_STEP)])
-    if any(other is not thing and other.contains(below, 0.0).any() for other in others):
+    if bottom < MIN_LIFTED or _lies_on_another(thing, others):
         return False
     aside = AXIS * np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)])
     stem = np.array([(*middle[:2], z) for z in np.arange(0.0, bottom, AXIS_STEP)])
@@ -197,6 +214,14 @@ def stands_behind(thing: Pipeline, others: Iterable[Pipeline], image: FrameImage
     depth = image.depth.ravel()[pixels]
     hidden = (depth > 0) & (depth < away - MIN_BEFORE)
     return len(pixels) > 0 and bool(hidden.mean() >= MIN_HIDDEN)
+
+
+def _lies_on_another(thing: Pipeline, others: Iterable[Pipeline]) -> bool:
+    """Return True if the box of another thing reaches below the middle of a thing."""
+    corners = thing.placed_corners
+    middle, bottom = corners.mean(axis=0), float(corners[:, 2].min())
+    below = np.array([(*middle[:2], z) for z in np.arange(bottom, bottom - SUPPORT, -AXIS_STEP)])
+    return any(other is not thing and other.contains(below, 0.0).any() for other in others)
 
 
 def _is_alike(thing: Pipeline, other: Pipeline) -> bool:

