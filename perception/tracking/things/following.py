@@ -29,6 +29,9 @@ nothing hides where it rested, for this comparison, and the minimum share that i
 MOVED_FIT = 0.6
 """Minimum agreement elsewhere at which a thing whose place is mostly hidden has moved."""
 
+MAX_SUNK = 0.006
+"""Depth in metres below the table from which a thing cannot be where it was found."""
+
 BY_HAND = 1.5
 """Time in seconds after a hand was seen in which a thing whose place is mostly hidden may have moved; any hand may have
 come and gone between two frames that are farther apart."""
@@ -190,7 +193,7 @@ def follow(
     for sighting in list(workers.each(sighted, doubtful)):
         thing = sighting.thing
         way = float(np.linalg.norm(sighting.found.place - thing.pose[:3, 3]))
-        is_elsewhere = MIN_WAY < way < settings.jump and sighting.fit > MOVED_FIT
+        is_elsewhere = MIN_WAY < way < settings.jump and sighting.fit > MOVED_FIT and not _is_sunk(sighting)
         if (
             is_by_hand
             and is_elsewhere
@@ -270,6 +273,13 @@ def _is_certain(
     own, around = (thing.contains(points, margin, found.pose).sum() for margin in (settings.margin, AROUND))
     is_seen_well = sighting.fit > FAR_FIT and sighting.visible > FAR_VISIBLE
     return bool(is_seen_well and own > MIN_EXPLAINED * around)
+
+
+def _is_sunk(sighting: Sighting) -> bool:
+    """Return True if a thing was found so low that it would reach below the table in any direction."""
+    box, pose = sighting.thing.oriented, sighting.found.pose
+    height = float(pose[2, :3] @ np.array(box.centre) + pose[2, 3])
+    return height - min(box.extents) / 2 < -MAX_SUNK
 
 
 def _is_as_likely_at_rest(sighting: Sighting, table: Table, seen: Observation, same: NDArray[np.bool_]) -> bool:

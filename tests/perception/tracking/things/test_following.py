@@ -1,5 +1,7 @@
 """Things that move: with what carries them, and until they are gone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from first_looks import HALF, MUG, PLATE, first_look
@@ -38,12 +40,14 @@ def test_thing_that_is_not_found_moves_with_what_it_lies_on() -> None:
     assert mug.pose[:3, 3] - plate.pose[:3, 3] == pytest.approx([0.02, 0.01, 0.05])
 
 
-@pytest.mark.parametrize(("hand_at", "moves"), [(-np.inf, False), (0.9, True)])
-def test_thing_whose_place_is_hidden_moves_only_after_a_hand(hand_at: float, moves: bool) -> None:
+@pytest.mark.parametrize(("hand_at", "lift", "moves"), [(-np.inf, 0.0, False), (0.9, 0.0, True), (0.9, 0.03, False)])
+def test_hidden_thing_moves_after_a_hand_and_not_below_the_table(hand_at: float, lift: float, moves: bool) -> None:
     look = first_look([PLATE, MUG])
     mug = list(look.things)[1]
     mug._rest = mug.pose.copy()
     mug._rest[0, 3] -= 0.05  # the frame shows it 5 cm beside the place where it rests
+    x, y, z = mug.oriented.centre
+    mug.oriented = replace(mug.oriented, centre=(x, y, z - lift))  # its box reaches below the table there
     mug.rest_again()
     look.table.reference.take(mug.slot, None, set())
     seen = look.seen(1.0, hand_at)
