@@ -7,7 +7,8 @@ import numpy as np
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect
-from deixis.perception.simulator.films.motion import FilmedFrame, Rest, film
+from deixis.perception.simulator.films.film import FilmedFrame
+from deixis.perception.simulator.films.stage import Rest, film
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.frames.image import FrameImage, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.looks.whole import bare_table, lay_out

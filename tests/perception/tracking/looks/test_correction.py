@@ -8,7 +8,7 @@ from first_looks import HALF, MUG, PLATE, cut_rim, first_look
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import BACKGROUND, Detection, detect
-from deixis.perception.simulator.films.motion import Rest, film
+from deixis.perception.simulator.films.stage import Rest, film
 from deixis.perception.tracking.looks.correction import reconciled, remodelled
 from deixis.perception.tracking.things.model import model_on_table
 
