@@ -149,7 +149,7 @@ def join_piece(
 
 
 def let_stand(new: Collection[Pipeline], things: Things, image: FrameImage, view: TableView) -> None:
-    """Extend new things down to the table whose feet are hidden, or too near the table to be told from its noise.
+    """Extend new things down to the table whose feet are hidden, or lie within the noise of the table.
 
     Parameters
     ----------
