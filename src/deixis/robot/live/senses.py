@@ -42,11 +42,11 @@ from deixis.perception.tracking.tracker import Tracker
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import to_ticks
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.diary import CALLED, NOT_CALLED
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.story import Event, Story, StorySettings
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
+from deixis.workflows.knowledge.recall import CALLED, NOT_CALLED
 from deixis.workflows.scenes.point import (
     MIN_CONFIDENCE,
     MIN_SIZE_FIT,

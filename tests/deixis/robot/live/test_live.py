@@ -52,6 +52,7 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
     with live_robot(folder / "memory", story, lines.append, processes=request.param) as robot:
         assert robot.wait(120.0)
         robot.says("what did the teacher say?")
+        robot.says("which one did the teacher show you first")
         robot.says("t3 is a bowl.")
         robot.says("t99 is a bowl.")
         assert robot.answered(60.0)
@@ -88,6 +89,10 @@ def test_typed_words_and_ids_are_heard(ran: Ran) -> None:
     assert heard(ran, "robot: Teacher said", "This is a fork")
     assert heard(ran, "robot: I see: t3 is a bowl.")
     assert heard(ran, "there is no t99 on the table")
+
+
+def test_recognised_questions_need_no_question_mark(ran: Ran) -> None:
+    assert heard(ran, "robot: Teacher showed the fork at")
 
 
 def test_words_that_were_hardly_recognised_are_asked_for_again(ran: Ran) -> None:
