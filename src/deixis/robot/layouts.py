@@ -24,6 +24,7 @@ from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import OrientedBox, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
+from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.evidence.properties.candidates import candidate_ratios
@@ -157,6 +158,25 @@ class LearnedLayout:
         """
         fuller = max((self.script, script), key=_fullness)
         return LearnedLayout(self.name, fuller, self.experience + seen)
+
+    def contradiction(self, script: Script) -> str | None:
+        """Return why the description and another one of the layout cannot both hold.
+
+        Parameters
+        ----------
+        script
+            The other description.
+
+        Returns
+        -------
+        str or None
+            The reason with the facts; None if both can hold.
+        """
+        facts = [fact for one in (self.script, script) for fact in one.graph().facts() if fact.weight >= 1]
+        names = sorted({name for fact in facts for name in (fact.subject, fact.object)})
+        implied = Implications(RelationGraph.from_facts(self.graph.vocabulary, names, dict.fromkeys(facts)))
+        conflict = None if implied.consistent else find_conflict(implied)
+        return None if conflict is None else f"{conflict.reason} ({', '.join(map(str, conflict.facts))})"
 
     @cached_property
     def graph(self) -> RelationGraph:

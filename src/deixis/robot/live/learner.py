@@ -277,6 +277,8 @@ class Learner(Module):
             taught = _listed(result.taught) or "nothing new"
             waiting = f" I am not sure yet about: {_listed(result.waiting)}." if result.waiting else ""
             learned = f"I learned how '{result.lesson.layout}' is laid. I know now: {taught}.{waiting}"
+            if result.contradiction is not None:
+                learned += f" This contradicts an earlier description: {result.contradiction}."
             self._then(
                 lambda: self._understand(board, at),
                 lambda: self._say(learned, at, board),

@@ -57,6 +57,7 @@ from deixis.workflows.scenes.point import (
     size_weights,
     spoken_name,
     taught_labels,
+    without_correction,
 )
 
 AT, TABLE, WATCHED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
@@ -218,6 +219,7 @@ class _Writer:
         self._detector = GestureDetector()
         self._watched_at = math.inf  # time of the last skeleton, until its gestures are finished
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
+        self._given: list[tuple[PointedLabel, str]] = []  # names that things got, each with its fluent
         self._waiting: list[_Words] = []
         self._came: dict[str, float] = {}  # time at which each thing came to the table; -inf if it lay there at first
         self._announced: dict[str, _Announced] = {}  # words that announced each thing
@@ -562,7 +564,7 @@ class _Writer:
             self._name_announced()
         else:
             for label in self._labels(utterance, announced):
-                self._write_label(label)
+                self._write_label(self._agreeing(label))
 
     def _write_label(self, label: PointedLabel) -> None:
         """Write a name that words give to a thing, or why nothing is taught."""
@@ -570,7 +572,9 @@ class _Writer:
         shown = Source(Origin.SHOWN, utterance.speaker, f"words at {utterance.at:.1f} s")
         if label.target is not None and label.refused is None and label.name is not None:
             what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
-            self._outbox.add(self._add(what, utterance.at, shown, label.probability))
+            added = self._add(what, utterance.at, shown, label.probability)
+            self._outbox.add(added)
+            self._given.append((label, added.fluent.id))
         elif label.name is not None and label.refused is not None:
             noticed = f"'{label.name}' was not learned: {label.refused}. {label.question or ''}".strip()
             self._outbox.add(self._add((utterance.speaker, NOTICED, noticed), utterance.at, shown))
@@ -605,7 +609,19 @@ class _Writer:
             return (replace(label, refused=why),)
         if not self._things.objects:
             return ()
-        return taught_labels([pointed_label(utterance, tuple(self._pointings), self._things)], self._things)[0]
+        return (pointed_label(utterance, tuple(self._pointings), self._things),)
+
+    def _agreeing(self, label: PointedLabel) -> PointedLabel:
+        """Return a label, refused if it contradicts an earlier name of the thing; a correction ends that name."""
+        *earlier, checked = taught_labels([*(given for given, _ in self._given), label], self._things)[0]
+        kept = []
+        for (given, fluent), now in zip(self._given, earlier, strict=True):
+            if now.refused is None:
+                kept.append((given, fluent))
+            else:
+                self._outbox.add(self._finished(fluent, given.utterance.at, label.utterance.at))
+        self._given = kept
+        return checked
 
     def _announced_label(self, announced: _Announced) -> PointedLabel:
         """Return what was announced with the thing that came to rest nearest in time, or why no thing gets the name.
@@ -727,9 +743,14 @@ def named(text: str) -> tuple[str | None, SpokenName | None]:
     --------
     >>> named("t3 is a fork.")
     ('t3', SpokenName(name='fork', positive=True, corrects=False))
+    >>> named("No, t3 is a spoon.")
+    ('t3', SpokenName(name='spoon', positive=True, corrects=True))
     """
-    known = re.match(r"\s*(t\d+)\s+", text)
-    return (None, spoken_name(text)) if known is None else (known[1], spoken_name(f"this {text[known.end() :]}"))
+    plain, corrects = without_correction(text)
+    known = re.match(r"\s*(t\d+)\s+", plain)
+    if known is None:
+        return None, spoken_name(text)
+    return known[1], spoken_name(f"{'no, ' if corrects else ''}this {plain[known.end() :]}")
 
 
 def _required(frame: NDArray[np.float64] | None) -> NDArray[np.float64]:
