@@ -67,6 +67,9 @@ MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
 MAX_SLENDER_WIDTH, MAX_SLENDERNESS = 0.02, 2.5
 """Width in metres below which a thing cannot stand if it is higher than ``MAX_SLENDERNESS`` times its width."""
 
+MAX_KNOB = 0.03
+"""Largest extent in metres of a knob, a piece on the top of another thing."""
+
 SIZE_DEVIATIONS, SIZE_PRIOR = (0.15, 0.15, 0.15), 2.0
 """Prior standard deviations of the logarithms of length, width and height, and the number of things they count as."""
 
@@ -420,17 +423,13 @@ def _fullness(script: Script) -> tuple[int, int, str]:
 def _pieces(boxes: Array) -> NDArray[np.bool_]:
     """Return which boxes are probably pieces of other things.
 
-    A piece lies mostly within another box in plan without rising above it, or it floats above the table and nothing
-    supports it, or it is too slender to stand.
+    A piece lies mostly within another box in plan without rising above it, or mostly within its volume, or it floats
+    above the table and nothing supports it, or it is too slender to stand, or it is a knob on another thing.
     """
     low, high = boxes[:, 0], boxes[:, 1]
     area = np.prod(high[:, :2] - low[:, :2], axis=1)
-    shared = np.prod(
-        np.clip(
-            np.minimum(high[:, None, :2], high[None, :, :2]) - np.maximum(low[:, None, :2], low[None, :, :2]), 0, None
-        ),
-        axis=2,
-    )
+    common = np.clip(np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None]), 0, None)
+    shared = np.prod(common[:, :, :2], axis=2)
     within = (shared >= PIECE_SHARE * area[:, None]) & (area[:, None] < area[None, :])
     flat = high[:, None, 2] <= high[None, :, 2] + PIECE_HEIGHT
     under = (shared > 0) & (np.abs(low[:, None, 2] - high[None, :, 2]) < SUPPORT_ERROR)
@@ -439,7 +438,10 @@ def _pieces(boxes: Array) -> NDArray[np.bool_]:
     size = high - low
     width = size[:, :2].min(axis=1)
     slender = (width < MAX_SLENDER_WIDTH) & (size[:, 2] > MAX_SLENDERNESS * width)
-    found: NDArray[np.bool_] = (within & flat).any(axis=1) | floats | slender
+    inside = np.prod(common, axis=2) >= PIECE_SHARE * np.prod(size, axis=1)[:, None]
+    np.fill_diagonal(inside, False)
+    knob = (size.max(axis=1) < MAX_KNOB) & under.any(axis=1)
+    found: NDArray[np.bool_] = (within & flat).any(axis=1) | inside.any(axis=1) | floats | slender | knob
     return found
 
 
