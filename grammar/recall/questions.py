@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -91,7 +92,7 @@ _NUMBERS = {
 _NUMBER_WORDS = "|".join(sorted(_NUMBERS, key=len, reverse=True))
 _COUNTED = re.compile(rf"\b({_NUMBER_WORDS}) (?=(?:second|minute|hour|day|week)s?\b)")
 
-_ANYONE = r"(?:any ?one|anybody|some ?one|somebody|i|we|you|people)"
+_ANYONE = r"(?:(?:any|some) ?(?:one|body)|i|we|you|people)"
 _REWORDED = tuple(
     (re.compile(pattern), wording)
     for pattern, wording in (
@@ -325,7 +326,7 @@ def _of_verb(verb: str) -> str:
     return "moved" if verb == "move" else "gone"
 
 
-_EVENTS = {
+_EVENTS: dict[str, Callable[[str], str]] = {
     "GONE": lambda _: "gone",
     "PLACED": lambda _: "come",
     "MOVED": lambda _: "moved",

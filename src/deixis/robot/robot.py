@@ -95,8 +95,8 @@ class Told(Answer):
         """Return the layout, its lesson, and the numbers of roles that are known and that wait."""
         waiting = f", {len(self.waiting)} waiting" if self.waiting else ""
         known = share(len(self.taught), len(self.taught) + len(self.waiting), "role")
-        contradicts = "" if self.contradiction is None else f"; contradicts an earlier description: {self.contradiction}"
-        return f"'{self.lesson.layout}' as lesson {self.lesson.id}: {known} known{waiting}{contradicts}"
+        doubt = "" if self.contradiction is None else f"; contradicts an earlier description: {self.contradiction}"
+        return f"'{self.lesson.layout}' as lesson {self.lesson.id}: {known} known{waiting}{doubt}"
 
     @property
     def taught(self) -> tuple[str, ...]:
@@ -570,6 +570,8 @@ class Robot(Closing):
         """
         if isinstance(text, str) and not text.strip():
             raise RobotError("`text` must describe a layout, got a blank text; describe how the table is laid")
+        if isinstance(text, str) and text.rstrip().endswith("?"):
+            raise RobotError("`text` must describe a layout or objects, got a question; ask `session.recall`")
         if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
             return self._expect_objects(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)

@@ -46,6 +46,11 @@ def test_a_contradicting_description_is_reported_and_counts(robot: deixis.Robot)
     assert robot.layouts["supper"].experience.tables == 4
 
 
+def test_a_question_is_not_learned_as_a_description(robot: deixis.Robot) -> None:
+    with pytest.raises(RobotError, match="got a question"):
+        robot.told("Is the fork left of the plate?")
+
+
 def test_a_scene_before_the_last_one_is_refused(robot: deixis.Robot) -> None:
     before = robot.diary.board.holding()
     with pytest.raises(RobotError, match=r"`at` must not be before the last scene at 2 s, got 1\.5 s"):

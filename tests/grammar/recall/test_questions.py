@@ -28,7 +28,7 @@ def test_suggested_wordings_are_understood(wording: str) -> None:
         ("Where has the fork been earlier?", "where", "fork", None, None, "before"),
         ("where was the fork originally?", "where", "fork", None, None, "at_first"),
         ("what did anyone take away since noon?", "gone", None, None, None, "since"),
-        ("did somebody take the cup away since noon?", "whether_did", "cup", None, None, "since"),
+        ("did someone take the cup away since noon?", "whether_did", "cup", None, None, "since"),
         ("has the cup gone?", "whether_did", "cup", None, None, "unstated"),
         ("what has left the table since noon?", "gone", None, None, None, "since"),
         ("Please tell me, since when is the island on the island?", "when_held", "island", "island", "on", "unstated"),
