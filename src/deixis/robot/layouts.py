@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.answers import count
 from deixis.grammar.script import Script
-from deixis.learning.layouts.experience import TOLERANCE, Experience, Moments, log_sizes, long_axis, predictive
+from deixis.learning.layouts.experience import TOLERANCE, Experience, log_sizes, long_axis, predictive
 from deixis.learning.lessons.lesson import layout_name
 from deixis.learning.lessons.scene_evidence import graph_evidence, named_by_candidates
 from deixis.ontology.graph.facts import Fact
@@ -57,9 +57,6 @@ HELD_WEIGHT = 0.5
 OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
 """Prior standard deviation in metres of the offset between two things, and the weight of this prior as a number of
 tables."""
-
-POOL_PRIOR = 4.0
-"""Number of offsets as which the prior deviation counts against the offsets of all pairs of a layout."""
 
 MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
 """Minimum height in metres at which a thing must rest on another one, and the error of the height of that one."""
@@ -341,40 +338,15 @@ class LearnedLayout:
         graph = self.graph
         centres = boxes.mean(axis=1)[:, :2]
         offset = centres[None, :] - centres[:, None]  # (p, p, 2)
-        for (first, second), seen in sorted(self._apart.items()):
-            prior = np.full(2, self._deviations[(first, second) in self._resting])
-            density = predictive(offset, seen, prior, OFFSET_PRIOR).prod(axis=2)
+        related = {tuple(sorted((fact.subject, fact.object))) for fact in graph.facts() if fact.subject != fact.object}
+        for first, second in sorted(related):
+            seen = self.experience.apart.get((first, second))
+            if seen is None or seen.count < 0.5:
+                continue
+            density = predictive(offset, seen, np.full(2, OFFSET_DEVIATION), OFFSET_PRIOR).prod(axis=2)
             table = np.log((1 - OFFSET_OUTLIERS) * density * OFFSET_AREA**2 + OFFSET_OUTLIERS)
             np.fill_diagonal(table, 0.0)
             yield graph.index(first), graph.index(second), table
-
-    @cached_property
-    def _apart(self) -> dict[tuple[str, str], Moments]:
-        """Offsets that were seen, of the pairs of roles that a stated fact relates."""
-        facts = (fact for fact in self.graph.facts() if fact.subject != fact.object)
-        pairs = {(min(fact.subject, fact.object), max(fact.subject, fact.object)) for fact in facts}
-        seen = {pair: self.experience.apart.get(pair) for pair in pairs}
-        return {pair: moments for pair, moments in seen.items() if moments is not None and moments.count >= 0.5}
-
-    @cached_property
-    def _resting(self) -> frozenset[tuple[str, str]]:
-        """Pairs of roles of which a stated fact says that the thing of one lies on that of the other."""
-        on = (fact for fact in self.graph.facts() if any(each.word in ("on", "under") for each in fact.relations))
-        return frozenset((min(fact.subject, fact.object), max(fact.subject, fact.object)) for fact in on)
-
-    @cached_property
-    def _deviations(self) -> dict[bool, float]:
-        """Usual standard deviation of offsets in metres, for things that lie on each other (True) and for others.
-
-        It is pooled over the pairs of the layout, with ``OFFSET_DEVIATION`` as that of ``POOL_PRIOR`` further offsets.
-        """
-        found: dict[bool, float] = {}
-        for rests in (True, False):
-            pairs = [seen for pair, seen in self._apart.items() if (pair in self._resting) is rests and seen.count > 1]
-            free = sum(seen.count - 1 for seen in pairs)
-            squares = sum(seen.count * float((seen.deviation**2).mean()) for seen in pairs)
-            found[rests] = float(np.sqrt((squares + POOL_PRIOR * OFFSET_DEVIATION**2) / (free + POOL_PRIOR)))
-        return found
 
     def _tables(
         self, boxes: Array, things: int, relations: Relations

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -13,7 +12,7 @@ from hypothesis import strategies as st
 from deixis.learning.layouts.experience import Experience, Moments, log_sizes, long_axis, predictive
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import OrientedBox, PerceivedObject
-from deixis.robot.layouts import OFFSET_DEVIATION, LearnedLayout, _pieces, angle_between
+from deixis.robot.layouts import LearnedLayout, _pieces, angle_between
 from deixis.workflows.layouts.read import read_script
 
 ROLES = ("fork", "knife", "plate")
@@ -90,17 +89,6 @@ def test_parts_of_things_are_pieces() -> None:
     pot, knob = [(0.3, 0.0, 0.0), (0.45, 0.2, 0.12)], [(0.36, 0.09, 0.126), (0.38, 0.11, 0.14)]
     saucer, cup = [(0.6, 0.0, 0.0), (0.75, 0.15, 0.02)], [(0.63, 0.03, 0.007), (0.72, 0.12, 0.07)]
     assert _pieces(np.array([jug, half, pot, knob, saucer, cup])).tolist() == [False, True, False, True, False, False]
-
-
-def test_usual_spread_of_offsets_is_learned() -> None:
-    tight = LearnedLayout("tea", read_script(text="layout tea; cup on saucer; spoon right of saucer"))
-    places = {("cup", "saucer"): 0.0, ("saucer", "spoon"): 0.15}
-    few = Experience(1, apart={pair: Moments.of((x, 0.0)) for pair, x in places.items()})
-    assert replace(tight, experience=few)._deviations == {True: OFFSET_DEVIATION, False: OFFSET_DEVIATION}
-    many = few
-    for _ in range(20):
-        many = many + few
-    assert max(replace(tight, experience=many)._deviations.values()) < 0.5 * OFFSET_DEVIATION
 
 
 def test_predictions_narrow_as_more_is_seen() -> None:
