@@ -219,6 +219,7 @@ class _Writer:
         self._detector = GestureDetector()
         self._watched_at = math.inf  # time of the last skeleton, until its gestures are finished
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
+        self._events: dict[Utterance, str] = {}
         self._given: list[tuple[PointedLabel, str]] = []  # names that things got, each with its fluent
         self._waiting: list[_Words] = []
         self._came: dict[str, float] = {}  # time at which each thing came to the table; -inf if it lay there at first
@@ -528,7 +529,8 @@ class _Writer:
             pointing = pointed_at(gesture, self._things)
             self._pointings.append(pointing)
             if pointing.decided is not None:
-                source = Source(Origin.SHOWN, printed_line(gesture.person), f"gesture at {gesture.at:.1f} s")
+                event = f"gesture {self._outbox.new_id(self._board)}"
+                source = Source(Origin.SHOWN, printed_line(gesture.person), event)
                 probability = pointing.probabilities[pointing.decided]
                 statement = (printed_line(gesture.person), POINTED_AT, pointing.decided)
                 added = self._add(statement, gesture.start, source, probability, gesture.finish)
@@ -554,7 +556,7 @@ class _Writer:
 
     def _write_utterance(self, utterance: Utterance) -> None:
         """Write words, and the names that they give to things."""
-        source = Source(Origin.SAID, utterance.speaker, f"words at {utterance.at:.1f} s")
+        source = Source(Origin.SAID, utterance.speaker, self._event(utterance))
         finish = utterance.end if utterance.end > utterance.at else utterance.at + MIN_DURATION
         statement, certainty = (utterance.speaker, SAID, utterance.text), max(utterance.confidence, 0.01)
         self._outbox.add(self._add(statement, utterance.at, source, certainty, finish))
@@ -566,10 +568,16 @@ class _Writer:
             for label in self._labels(utterance, announced):
                 self._write_label(self._agreeing(label))
 
+    def _event(self, utterance: Utterance) -> str:
+        """Return the id of the event of words, which those of another story on this memory do not have."""
+        if utterance not in self._events:
+            self._events[utterance] = f"words {self._outbox.new_id(self._board)}"
+        return self._events[utterance]
+
     def _write_label(self, label: PointedLabel) -> None:
         """Write a name that words give to a thing, or why nothing is taught."""
         utterance = label.utterance
-        shown = Source(Origin.SHOWN, utterance.speaker, f"words at {utterance.at:.1f} s")
+        shown = Source(Origin.SHOWN, utterance.speaker, self._event(utterance))
         if label.target is not None and label.refused is None and label.name is not None:
             what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
             added = self._add(what, utterance.at, shown, label.probability)
