@@ -15,6 +15,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     HEDGES,
     IS_FORMS,
     MODALS,
+    NUMBERS,
     ORDINALS,
     PAST_FORMS,
     POSSESSIVES,
@@ -446,6 +447,39 @@ def _deny_contrasts(words: list[Word]) -> None:
             words[i].norm, words[i + 1].norm = ",", "not"
 
 
+def _count_halves(words: list[Word]) -> None:
+    """Read *half a dozen* as 6, and *half of the eight cups* as *4 of the eight cups*."""
+    for i in range(len(words) - 3, -1, -1):
+        norms = [word.norm for word in words[i : i + 4]]
+        if norms[:3] == ["half", "a", "dozen"]:
+            words[i].norm, words[i].end = "6", words[i + 2].end
+            del words[i + 1 : i + 3]
+        elif len(norms) == 4 and norms[0] == "half" and norms[1] == "of" and norms[2] in DETERMINERS | POSSESSIVES.keys():
+            number = NUMBERS.get(norms[3]) or (int(norms[3]) if norms[3].isdecimal() else 1)
+            if number % 2 == 0:
+                words[i].norm = str(number // 2)
+
+
+def _without_floating_each(words: list[Word]) -> None:
+    """Leave out *each* after the things that it is about: *the cups each have a spoon*, *they stand on a saucer each*."""
+    for i in range(len(words) - 1, 1, -1):
+        before, after = words[i - 1], words[i + 1].norm if i + 1 < len(words) else "."
+        if words[i].norm != "each" or not before.is_word:
+            continue
+        noun = before.norm not in _BEFORE_EACH and before.norm not in prepositions()
+        form = verb_forms().get(after)
+        verb = after in ("have", "are") or (form is not None and form.form == "base" and form.kind == "posture")
+        if (noun and (verb or after in (".", ",", ";", "!", "and"))) or (
+            before.norm in ("are", "were") and after in prepositions()
+        ):
+            words[i - 1].end = words[i].end
+            del words[i]
+
+
+_BEFORE_EACH = word_set("one and or but of with then have has are is were was be")
+"""Words after which *each* is a subject or a number of its own: *one each*."""
+
+
 def _depicted(text: str, span: Span) -> Iterator[Span]:
     """Yield the words of a sentence that tell what a picture shows, titles of works, and what is quoted."""
     yield from (match.span(1) for match in _SHOWN.finditer(text, *span))
@@ -589,6 +623,16 @@ def _says_no_place(words: str) -> bool:
     return "," in words and (prepositions().keys() | PRONOUNS.keys() | IS_FORMS).isdisjoint(said)
 
 
+_INCH_MARKS = ('"', "\u2033", "\u201d")
+"""Marks after a number of inches."""
+
+
+def _is_inch_mark(text: str, start: int, at: int) -> bool:
+    """Return True for a mark right after a number that closes no quotation: *2" from the edge*."""
+    quoted = sum(text.count(mark, start, at) for mark in ("\u201c", '"'))
+    return at > start and text[at - 1].isdigit() and quoted % 2 == 0
+
+
 def words_of(text: str, span: Span) -> list[Word]:
     """Return the words and the punctuation marks of a sentence.
 
@@ -626,7 +670,9 @@ def words_of(text: str, span: Span) -> list[Word]:
             found.append(Word(raw, f"{LITERAL}{name}{LITERAL}", start, end, True))
             continue
         if not raw[0].isalnum() and norm not in _CLITICS:
-            if norm in ("and", "at"):
+            if raw in _INCH_MARKS and _is_inch_mark(text, span[0], start):
+                found.append(Word(raw, "inches", start, end, True))
+            elif norm in ("and", "at"):
                 found.append(Word(raw, norm, start, end, True))
             elif raw in _ARROWS:
                 found.append(Word(raw, ":", start, end, False))
@@ -653,6 +699,8 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)
+    _count_halves(found)
+    _without_floating_each(found)
     _without_corrected(found)
     _without_doubts_of_the_reader(text, span, found)
     _with_commands_after_places(found)

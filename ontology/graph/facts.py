@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from deixis.arguments import require_fields
+from deixis.errors import GraphError
 from deixis.ontology.relations.relation import Relation
 
 
@@ -31,7 +33,8 @@ class Fact:
     """A statement that the subject stands in one of the relations to the object, or, if not ``positive``, in none.
 
     ``weight`` is above 0 and at most 1, and below 0.5 for a fact that is rarely true. An ``optional`` fact need not
-    hold. ``source`` is the place where the fact was written.
+    hold. ``source`` is the place where the fact was written. A field of another type is an ArgumentError, a weight
+    outside its range or a fact without a relation a GraphError.
 
     Examples
     --------
@@ -51,6 +54,26 @@ class Fact:
     optional: bool = False
     weight: float = 1.0
     source: Source | None = None
+
+    def __post_init__(self) -> None:
+        if not self._has_usual_types():
+            require_fields(self)
+            object.__setattr__(self, "relations", tuple(self.relations))
+        if not self.relations:
+            raise GraphError("`relations` must have at least one relation, got none")
+        if not 0 < self.weight <= 1:
+            raise GraphError(f"`weight` must be above 0 and at most 1, got {self.weight}")
+
+    def _has_usual_types(self) -> bool:
+        """Return whether the fields need no further check; an inference makes 100,000 facts."""
+        return (
+            type(self.subject) is type(self.object) is str
+            and type(self.relations) is tuple
+            and {*map(type, self.relations)} == {Relation}
+            and type(self.positive) is type(self.optional) is bool
+            and type(self.weight) is float
+            and (self.source is None or type(self.source) is Source)
+        )
 
     def __str__(self) -> str:
         names = " or ".join(relation.name for relation in self.relations)

@@ -153,7 +153,7 @@ class Tracker:
 
     Examples
     --------
-    >>> from deixis.perception.simulator.films.motion import PassOver, Rest, film
+    >>> from deixis.perception.simulator.films.stage import PassOver, Rest, film
     >>> from deixis.perception.simulator.laying import Placement
     >>> story = film([Placement("mug", "mug", 0.0, 0.0)], [Rest(0.4)])
     >>> with Tracker() as tracker:

@@ -88,6 +88,9 @@ class NounChunker(ModifierFinder):
             plural = norms[i] in PLURAL_PRONOUNS
             return i + 1, NounPhrase(self._span(start, i + 1), pronoun=pronoun, plural=plural, negated=negated), ()
         while norms[i] in DETERMINERS and not (norms[i] == "another" and norms[i + 1] in self._closed):
+            if norms[i] == "other" and determiner == "the" and norms[i + 1] in ("left", "right") and norms[i + 2] == "of":
+                phrase = NounPhrase(self._span(start, i + 1), "", "the", pronoun="other", negated=negated)
+                return i + 1, phrase, ()  # 'one left of the cross, the other right of it'
             if norms[i] == "single" or (
                 norms[i] == "other" and determiner and not self._continues(i + 1) and self.number(i + 1) is None
             ):

@@ -125,7 +125,9 @@ class VerbChunker(RelatorChunker):
             elif norm in ("has", "have", "had") and self.norms[i + 1] == "to" and self._is_base(i + 2):
                 modal, i = "have to", i + 1
             elif norm in _TENDING and self.norms[i + 1] == "to" and self._is_base(i + 2):
-                modal, verb, i = _TENDING[norm], None if self.norms[i + 2] != "be" else verb, i + 1
+                spared = norm == "required" and not positive  # 'it is not required to stand on the mat'
+                modal = "need" if spared else _TENDING[norm]
+                verb, i = None if self.norms[i + 2] != "be" else verb, i + 1
             elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
                 adverbs += ["being"] * (norm == "being" and verb == "be")  # 'it is being cleaned'
                 verb, past = "be", past or norm in ("was", "were")

@@ -718,8 +718,10 @@ def flat(verb: Verb) -> list[Predicate]:
     """
     found: list[Predicate] = []
     contrasted: list[Predicate] = []
+    after_but = False
     for part in verb.predications:
-        if part.contrast:
+        after_but = after_but or part.contrast  # also 'behind the jar' in 'not on it but under it, behind the jar'
+        if after_but and not part.choice:
             contrasted += part.predicates
         elif not part.choice:
             found += part.predicates
@@ -984,6 +986,10 @@ _ALIGNING = frozenset({"parallel", "perpendicular", "aligned", "level_with"})
 """Relations after a direction that has their object: *above and parallel to the plate*."""
 
 
+_SHARED_FROM = frozenset({"around", "middle"})
+"""Other relations whose object belongs to a place before them as well: *on or around X*, *above and in the middle*."""
+
+
 def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tuple[Predicate, ...]]]:
     """Give a place without an object that of its neighbour: *below and to the left of X*, *above X and to the left*."""
     for i, (link, predicates) in enumerate(made):
@@ -1002,9 +1008,9 @@ def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tu
             continue
         after = made[i + 1][1][0] if i + 1 < len(made) and made[i + 1][1] and made[i + 1][0] in ("and", "or") else None
         before = made[i - 1][1][0] if i and made[i - 1][1] and link in ("and", ",", "or") else None
-        if after is not None and after.arguments and after.relation in _SHARING | _ALIGNING:
+        if after is not None and after.arguments and after.relation in _SHARING | _ALIGNING | _SHARED_FROM:
             made[i] = (link, (replace(this, arguments=after.arguments),))
-        elif before is not None and before.arguments and before.relation in _SHARING and len(before.arguments) == 1:
+        elif before is not None and len(before.arguments) == 1 and before.relation in _SHARING and not before.reversed:
             made[i] = (link, (replace(this, arguments=before.arguments),))
     return made
 

@@ -222,6 +222,11 @@ def _subject_follows(
     )
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
+    told_apart = any(kind == "NP" and chunks[k].value.pronoun == "one" for k, kind in enumerate(types[start:at], start))
+    if told_apart and chunks[end].value.pronoun == "other" and types[end + 1 : end + 2] in (["PREP"], ["ADV"], ["PART"]):
+        return True  # 'one left of the cross, the other right of it'
+    if _has_beside_it(chunks, types, start, at, end):
+        return False
     if complete and kinds in ({"COMMA"}, {"AND"}) and types[end : end + 4] == ["NP", "AND", "NP", "PREP"]:
         opposite = _is_opposite(chunks, start, at, end + 3)
         if opposite or kinds == {"COMMA"}:
@@ -274,6 +279,16 @@ def _list_of_with(types: list[str], start: int, at: int) -> bool:
     """Return True for things with their places after *with*: 'with salt at its left and pepper at its right'."""
     withs = [i for i in range(start, at) if types[i] == "WITH"]
     return bool(withs) and not any(kind in FINITE for kind in types[withs[-1] : at])
+
+
+def _has_beside_it(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:
+    """Return True for things with places beside their owner: *it has a fork to its left and a knife to its right*."""
+    verbs = [i for i in range(start, at) if types[i] in FINITE]
+    has = bool(verbs) and types[verbs[-1]] == "TVERB" and chunks[verbs[-1]].value.lemma == "have"
+    placed = types[at - 2 : at] == types[end + 1 : end + 3] == ["PREP", "NP"]
+    phrases = (chunks[at - 1].value, chunks[end + 2].value) if has and placed else ()
+    owners = [phrase.owner or phrase for phrase in phrases]
+    return bool(owners) and all(owner.pronoun in ("it", "they") and not owner.head for owner in owners)
 
 
 def _verb_left_out(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:

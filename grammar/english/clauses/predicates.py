@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import VerbGroup
 from deixis.grammar.english.clauses.built import Noun, Predication, misunderstood, union
+from deixis.grammar.english.clauses.places import arrangement_of
 from deixis.grammar.english.tree import (
     Adjective,
     Degree,
@@ -104,6 +105,12 @@ _LEAVING = word_set(
 _RANGING = frozenset({"line", "range", "queue", "row"})
 """Verbs by which things get into a row: *lined up on the shelf*."""
 
+_ARRANGING = {"stack": "stacked", "pile": "stacked", "nest": "nested", "line": "row", "align": "row"}
+"""Relation of several things together by the participle that states it alone: *the plates are stacked*."""
+
+_FORMING = frozenset({"form", "make", "build"})
+"""Verbs whose object can be an arrangement of the subject: *the cups form a circle*."""
+
 _FINISHING = word_set("bind bound upholster gild enamel lacquer varnish paint print dress cast carve engrave sign mark")
 """Verbs after which *in* names a material or a manner."""
 
@@ -169,6 +176,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
                 if kind == "unknown" or (lemma in _STATES and following.relation != "pointing"):
                     found.append(_state(lemma, predicate))
+            elif following is None and lemma in _ARRANGING:
+                found.append(Predicate(_ARRANGING[lemma], (), predicate.span, positive=predicate.positive))
             elif following is None and lemma in ("find", "see", "notice", "present"):
                 found.append(Predicate("there", (), predicate.span, positive=predicate.positive))
             elif (following is None or kind == "unknown") and (kind != "posture" or lemma in _STATES):
@@ -407,6 +416,9 @@ def transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, .
     between = tuple(p for p in phrase.predicates if p.relation == "between")
     if last_word(phrase.head) in GAPS and between:  # 'soft bags fill the gaps between the cases'
         return (*between, *things.extra)
+    arranged = arrangement_of(phrase) if group.lemma in _FORMING and phrase.determiner in ("a", "an") else None
+    if arranged is not None:
+        return (Predicate(arranged, (), span, adverbs=group.adverbs, positive=group.positive), *things.extra)
     if not relation:
         misunderstood(span, f"'{group.lemma}' with an object does not say where something is")
         return things.extra

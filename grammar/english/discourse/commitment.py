@@ -6,7 +6,7 @@ import re
 
 from deixis.grammar.english.tokens import DOUBT
 from deixis.grammar.english.tree import Mood, Sentence
-from deixis.grammar.english.vocabulary.function_words import READY
+from deixis.grammar.english.vocabulary.function_words import NUMBERS, OTHER_UNITS, READY, UNITS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.verbs import SAYING
 
@@ -168,6 +168,12 @@ SELDOM = re.compile(
     re.IGNORECASE,
 )
 """Words by which something is so at times, or of some things."""
+AT_MOST = re.compile(
+    r"\b(?:at\s+most|(?:no|not)\s+more\s+than|fewer\s+than|less\s+than|up\s+to|a\s+maximum\s+of)\s+"
+    rf"(?:{'|'.join(NUMBERS)}|\d+)\s+(?!(?:{'|'.join(UNITS)}|{'|'.join(OTHER_UNITS)})s?\b)(?=[a-z])",
+    re.IGNORECASE,
+)
+"""Upper bound of the number of things, which does not say that there are any: *at most two cups*."""
 UNSURE = re.compile(
     r"(?:\bnot|n['\u2019]t|\bhardly|\bnever|\bfar\s+from)\s+(?:really\s+|quite\s+|so\s+|at\s+all\s+|even\s+)?"
     r"(?:sure|certain|convinced|clear)\b|\b(?:unsure|uncertain|unclear|doubtful|unlikely)\s+(?:if|that|whether|the|an?)\b",

@@ -78,6 +78,10 @@ COMPARTMENTS = frozenset(
 """Nouns of places in a thing, which stand for the thing: *in slot 3 of the rack*."""
 
 
+ARRANGEMENTS = {"row": "row", "line": "row", "circle": "circle", "ring": "circle"}
+"""Claim about the things of a phrase by its head: *a row of pawns*."""
+
+
 class Mentions(Drafting, ABC):
     """Reader of noun phrases."""
 
@@ -129,6 +133,10 @@ class Mentions(Drafting, ABC):
                 found += [] if introduced is None else [introduced]
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
         phrase = _with_restrictions_of_contents(phrase)
+        of = phrase.of
+        arranged = phrase.head in ARRANGEMENTS and phrase.count is None and not (phrase.plural or phrase.adjectives)
+        if arranged and of is not None and of.head and of.plural and self.references.earlier(phrase) is None:
+            return self._arrange(phrase, replace(of, predicates=()), relation, besides)
         key = (phrase.span, phrase.head, phrase.count)
         if phrase.head and key in self.introduced:
             return self.introduced[key]
@@ -181,6 +189,21 @@ class Mentions(Drafting, ABC):
                 self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}
         return entity
 
+    def _arrange(
+        self, phrase: NounPhrase, of: NounPhrase, relation: str | None, besides: Entity | None
+    ) -> Entity | None:
+        """Return the things of *a row of pawns*, and state that they are in a row."""
+        things = self._introduce(of, relation, besides)
+        if things is None or things.role is not Role.THING:
+            return things
+        things.aliases.add(phrase.head)
+        self.references.renamed.append(things)  # later 'the row'
+        plain = replace(self.how, positive=True, weight=1.0, optional=False, quantifier=None, span=phrase.span)
+        self._add(ARRANGEMENTS[phrase.head], (things,), (), how=plain)
+        if phrase.predicates:
+            self._say(things, phrase.predicates, phrase, focus=False)
+        return things
+
     def _bears(self, entity: Entity, predicate: Predicate) -> bool:
         """Return True for a place beside a thing that is on or inside an entity, which the entity cannot have."""
         if predicate.relation not in _BESIDE | {"left", "right"} or len(predicate.arguments) != 1 or predicate.reversed:
@@ -215,6 +238,8 @@ class Mentions(Drafting, ABC):
                     )
         for adjective in phrase.adjectives:
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+            if adjective.word in ("left", "right"):
+                name = f"{adjective.word}most"
             if new and adjective.degree is Degree.SUPERLATIVE and name is not None and not entity.members:
                 self._add(name, (entity,), (), how=replace(plain, span=phrase.span))
         if new and entity.members:

@@ -26,6 +26,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
+from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -49,7 +50,21 @@ UNARY = frozenset(
 FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire", "tail", "chain", "flex"})
 """Parts that reach to other places than their wholes."""
 
-NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
+NOT_STATES = word_set(
+    "need turn roll lay put place set leave open water know call referred name mean work pick choose use allow require"
+    " include exclude recommended dedicated devoted recommend suggest advise ask forget remember consider regard offer give hand drink eat keep say"
+)
+"""Verbs whose participles tell no state of a thing."""
+
+
+def _is_all_else(predicate: Predicate) -> bool:
+    """Return True for a comparison with everything else or all the others, which is a superlative."""
+    rest = predicate.arguments if len(predicate.arguments) == 1 and predicate.value is not None else ()
+    return any(
+        (a.pronoun in ("everything", "anything") or (a.determiner == "all" and a.pronoun in ("other", None)))
+        and not a.head and a.of is None
+        for a in rest
+    )  # fmt: skip
 
 
 class Statements(Relations):
@@ -93,6 +108,8 @@ class Statements(Relations):
             return  # said about a part: 'whose stick is in the pot'
         if handler is not None:
             handler(subject, predicate, others)
+        elif predicate.degree is Degree.COMPARATIVE and _is_all_else(predicate):
+            self._property(subject, replace(predicate, arguments=(), degree=Degree.SUPERLATIVE))
         elif self._is_seen_from_the_viewer(predicate):
             nearer = replace(predicate, relation="bottom" if relation == "near" else "top", degree=Degree.PLAIN)
             self._relate(subject, replace(nearer, arguments=(predicate.than,), than=None), others)  # type: ignore[arg-type]
@@ -142,8 +159,8 @@ class Statements(Relations):
             value = None
         elif value is None or relation in ("other", "position") or value in NOT_STATES:
             return
-        elif relation == "state" and "being" in predicate.adverbs:
-            return  # 'it is being cleaned' tells what happens, and not a state
+        elif relation == "state" and ("being" in predicate.adverbs or Guess.CUT_SHORT in self.how.guesses):
+            return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
         self._add(relation, (subject,), (), value=value)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
@@ -174,6 +191,12 @@ class Statements(Relations):
 
     def _say_kind(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read *it is the tallest*, *the third is the shortest of them*, *it is a red cup*."""
+        one = [a for a in predicate.arguments if a.pronoun == "one" and a.determiner is None and not a.head]
+        if one and one == list(predicate.arguments) and subject.itself.members and one[0].predicates:
+            free = [leaf for leaf in subject.leaves() if not leaf.is_picked]
+            if free:  # 'there are two candles: one behind the cross and one in front of it'
+                self._say(self.references.picked(free[0], one[0]), one[0].predicates, one[0])
+            return
         for phrase in predicate.arguments:
             for adjective in phrase.adjectives:
                 name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))

@@ -15,7 +15,7 @@ colour: mauve, burgundy, charcoal, aqua, indigo, lavender, peach, colored, colou
 colour: creme, off-white, blonde, chocolate, mahogany, transparent, clear, opaque, shiny, dull, matte, glossy, blueish
 size: big, bigger, biggest, large, larger, largest, small, smaller, smallest, little, littler, littlest, tiny, huge
 size: medium, mini, giant, massive, enormous, medium-sized, full-size, oversized, compact, average, regular, mid-sized
-size: full-sized, miniature, petite, great, full, main
+size: full-sized, miniature, petite, great, full
 height: tall, taller, tallest, short, shorter, shortest, high, higher, highest, low, lower, lowest
 length: long, longer, longest
 width: wide, wider, widest, narrow, narrower, narrowest, broad, broader, broadest

@@ -123,8 +123,9 @@ class Robot(Closing):
 
     Notes
     -----
-    A robot is closed when its ``with`` block ends. Things are identified by their ids in the present scene. Times are
-    in seconds since the origin of the blackboard; None is the present. Only one thread at a time may call a method.
+    A robot is closed when its ``with`` block ends; a later call raises MemoryFormatError. Things are identified by
+    their ids in the present scene. Times are in seconds since the origin of the blackboard; None is the present. Only
+    one thread at a time may call a method.
 
     Examples
     --------
@@ -212,9 +213,13 @@ class Robot(Closing):
             self._remember_unnamed()
         return self._diary
 
+    def _require_open(self) -> None:
+        """Raise MemoryFormatError if the robot is closed."""
+        self.session.knowledge_store.require_usable()
+
     def _time(self, at: float | None) -> float:
         """Return a time in seconds, the present for None; raise an error unless it is finite and the robot open."""
-        self.session.knowledge_store.require_usable()
+        self._require_open()
         if at is not None and not math.isfinite(at):
             raise RobotError(f"`at` must be a finite number of seconds, got {at}")
         return self.diary.board.seconds() if at is None else at
@@ -393,6 +398,7 @@ class Robot(Closing):
         TableKnowledge
             The recogniser, the layouts, words and sizes.
         """
+        self._require_open()
         if self._knowledge is None:
             frame = self._scene.frame if self._scene is not None else "table"
             known = self.session.view_store.known(frame)
@@ -408,6 +414,7 @@ class Robot(Closing):
         Look
             The probable layouts, the names of the things, and the mistakes.
         """
+        self._require_open()
         if self._look is None:
             self._look = self.knowledge().look(self.scene, self._names_shown())
             self._conclude(self._look)
@@ -472,6 +479,7 @@ class Robot(Closing):
         RobotError
             If there is no layout of that name.
         """
+        self._require_open()
         if layout is not None and layout not in self.layouts:
             known = ", ".join(sorted(self.layouts)) or "none"
             raise RobotError(f"`layout` must be a layout that the robot knows, got '{layout}'; there are: {known}")
@@ -723,6 +731,7 @@ class Robot(Closing):
         Consolidation
             The lessons, and the reasons why other experiences taught nothing.
         """
+        self._require_open()
         return consolidate(self.diary.board, _RobotLearner(self), RobotModule.name, self._keep_unnamed)
 
     # ---- what waits
@@ -730,6 +739,7 @@ class Robot(Closing):
     @property
     def questions(self) -> tuple[Question, ...]:
         """Questions about the present table whose information is worth their cost, the most informative first."""
+        self._require_open()
         questions = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
         informative = [question for question in questions if question.gain > QUESTION_COST]
         return tuple(sorted(informative, key=lambda question: -question.gain))
@@ -737,6 +747,7 @@ class Robot(Closing):
     @property
     def layout_question(self) -> LayoutQuestion | None:
         """Question for the name of a layout that came up several times without a name; None if there is no question."""
+        self._require_open()
         found = None if self._scene is None else self._kind(self._scene)
         if found is None or len(found[1].tables) < MIN_TABLES or found[1].asked:
             return None
@@ -788,6 +799,7 @@ class Robot(Closing):
         >>> robot.close()
         >>> folder.cleanup()
         """
+        self._require_open()
         kind = question.kind
         kept = [table.kept for table in kind.tables if table.kept is not None]
         index = next((n for n, known in enumerate(self.unnamed) if known.layout.script is kind.layout.script), None)
@@ -851,6 +863,7 @@ class Robot(Closing):
         >>> robot.close()
         >>> folder.cleanup()
         """
+        self._require_open()
         lesson = self.lessons[question.lesson]
         if question.role not in lesson.waiting:
             raise RobotError(f"`question` must be about a role that still waits, and '{question.role}' does not")
@@ -874,6 +887,7 @@ class Robot(Closing):
         tuple of tuple
             Number of the lesson and name of the role, for each view that was learned.
         """
+        self._require_open()
         done = []
         for number in range(len(self.lessons)):
             lesson = self.lessons[number]

@@ -114,10 +114,26 @@ def test_times_may_be_numbers_of_numpy(robot: deixis.Robot) -> None:
     assert told.lesson.id == "supper-3"
 
 
-def test_a_closed_robot_sees_nothing(tmp_path: Path) -> None:
+def test_a_closed_robot_sees_and_answers_nothing(tmp_path: Path) -> None:
     with deixis.Robot(tmp_path / "memory") as robot:
-        robot.sees(table(fork=FORK, plate=PLATE), at=1.0)
-    for call in (lambda: robot.sees(table(fork=FORK, plate=PLATE), at=2.0), robot.watches):
+        robot.sees(table(fork=FORK, plate=PLATE, knife=KNIFE), at=1.0)
+        robot.told(TEXT, at=2.0)
+        robot.look()
+    for call in (
+        lambda: robot.sees(table(fork=FORK, plate=PLATE), at=2.0),
+        robot.watches,
+        robot.look,
+        robot.names,
+        robot.layout,
+        robot.check,
+        lambda: robot.check("brunch"),
+        robot.knowledge,
+        robot.consolidate,
+        robot.reconsider,
+        robot.remember,
+        lambda: robot.questions,
+        lambda: robot.layout_question,
+    ):
         with pytest.raises(deixis.DeixisError, match="this session is closed"):
             call()
 

@@ -14,7 +14,8 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import BACKGROUND, Detection, detect
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox
-from deixis.perception.simulator.films.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
+from deixis.perception.simulator.films.film import FilmedFrame
+from deixis.perception.simulator.films.stage import Action, Bring, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.frames.image import image_of, optics_of
 from deixis.perception.tracking.settings import TrackingSettings

@@ -15,6 +15,7 @@ from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 from deixis.answers import Answer
+from deixis.arguments import checks_arguments
 from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuestionError, When, read_question
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
@@ -116,6 +117,7 @@ class Recall(Answer):
         """Return the answer in a sentence."""
         return self.answer
 
+    @checks_arguments
     def moment(self, seconds: float) -> datetime | None:
         """Return seconds since the origin as local time.
 
