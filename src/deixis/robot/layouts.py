@@ -46,7 +46,7 @@ MIN_TURN_OUTLIERS = 1e-4
 """Minimum share of things that lie at any angle without a mistake. It is a tenth with no table seen, and a tenth of
 that with each further one."""
 
-OBSERVED_WEIGHT = 0.5
+OBSERVED_WEIGHT = 0.25
 """Factor of the evidence of relations that were seen but not stated, as those of different pairs depend on each other.
 """
 
