@@ -20,6 +20,7 @@ from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.format import format_script
 from deixis.grammar.script import Script
 from deixis.learning.layouts.experience import Experience
+from deixis.learning.lessons.lesson import layout_name
 from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
 from deixis.memory.episodes.fluents.changes import Change
@@ -72,6 +73,9 @@ class RobotError(DeixisError, ValueError):
 class Told(Answer):
     """Result of describing a layout: the lesson, what the session learned, the known roles, and those that wait.
 
+    ``contradiction`` is the reason why the description and an earlier one of the layout cannot both hold; None if they
+    can. Both count: ``show`` prints on how many tables each statement held.
+
     Examples
     --------
     >>> import tempfile
@@ -85,12 +89,14 @@ class Told(Answer):
 
     lesson: TableLesson
     learned: Learned
+    contradiction: str | None = None
 
     def summary(self) -> str:
         """Return the layout, its lesson, and the numbers of roles that are known and that wait."""
         waiting = f", {len(self.waiting)} waiting" if self.waiting else ""
         known = share(len(self.taught), len(self.taught) + len(self.waiting), "role")
-        return f"'{self.lesson.layout}' as lesson {self.lesson.id}: {known} known{waiting}"
+        doubt = "" if self.contradiction is None else f"; contradicts an earlier description: {self.contradiction}"
+        return f"'{self.lesson.layout}' as lesson {self.lesson.id}: {known} known{waiting}{doubt}"
 
     @property
     def taught(self) -> tuple[str, ...]:
@@ -316,7 +322,8 @@ class Robot(Closing):
         SceneError
             If it is not a scene.
         RobotError
-            If the boxes of the scene have no heights.
+            If the boxes of the scene have no heights, or the time is before that of the last scene. Nothing changes
+            then.
         """
         from deixis.workflows.layouts.read import as_scene
 
@@ -324,6 +331,10 @@ class Robot(Closing):
         if scene.objects and len(scene.objects[0].minimum) < 3:
             raise RobotError("`scene` must have boxes with heights, in metres, as perceive() makes them")
         seen_at = self._time(at)
+        if self._scene is not None and seen_at < self._seen_at:
+            if at is not None:
+                raise RobotError(f"`at` must not be before the last scene at {self._seen_at:g} s, got {at:g} s")
+            seen_at = self._seen_at
         if self._fullest is not None and not is_same_table(self._fullest, scene):
             self._keep_unnamed(self._fullest)
             self._fullest = None
@@ -347,7 +358,7 @@ class Robot(Closing):
         """
         now = self._time(at)
         if self._scene is not None:
-            self._look_for_expected(now, watched=True)
+            self._look_for_expected(max(now, self._seen_at), watched=True)
 
     def _keep_unnamed(self, scene: Scene) -> None:
         """Keep a table with those that are alike, if no layout explains it and no person described it."""
@@ -567,19 +578,23 @@ class Robot(Closing):
         """
         if isinstance(text, str) and not text.strip():
             raise RobotError("`text` must describe a layout, got a blank text; describe how the table is laid")
+        if isinstance(text, str) and text.rstrip().endswith("?"):
+            raise RobotError("`text` must describe a layout or objects, got a question; ask `session.recall`")
         if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
             return self._expect_objects(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
         seen = self.knowledge().recognised(self.scene)
         words = text if isinstance(text, str) else script.reading.text if script.reading else format_script(script)
         now, event = self._time(at), self.diary.event(event, "sentence")
+        earlier = self.layouts.get(layout_name(script))
         with self.diary.collected() as changes:
             self.diary.heard(words, by, now, event)
         learned = self.session.learn(
             script, seen, teacher=by, events=() if event is None else (event,), episodes=lambda _: self._part(changes)
         )
         self._known_at = max(self._known_at, now)
-        return Told(self._learned(script, self.scene, learned), learned)
+        contradiction = None if earlier is None else earlier.contradiction(script)
+        return Told(self._learned(script, self.scene, learned), learned, contradiction)
 
     def _layout(self, text: str) -> Script:
         """Return the layout that a text describes, with the name that the text gives it."""
