@@ -31,6 +31,9 @@ class Chunker(FixedPhraseChunker):
         """
         at, end = 0, len(self.words)
         while at < end:
+            if (used := self._use(at)) is not None:
+                at = used
+                continue
             chunk = self._chunk(at)
             chunk.span = self.words[at].start, self.words[chunk.end - 1].end
             if chunk.type == "GO":  # 'stand back': you stand back

@@ -44,6 +44,10 @@ def _idioms() -> dict[str, list[tuple[str, ...]]]:
     return found
 
 
+MAX_JUDGEMENT = 8
+"""Number of words before an infinitive in which *it is* can begin a judgement of it."""
+
+
 class FixedPhraseChunker(JointChunker):
     """Finder of fixed phrases."""
 
@@ -284,12 +288,16 @@ class FixedPhraseChunker(JointChunker):
             and (
                 self.nouns.is_determiner(at + 2)
                 or self.norms[at + 2] in ("it", "them")
-                or (self.norms[at - 1] in _JUDGEMENTS and self.nouns.is_noun(at + 2))
+                or ((self.norms[at - 1] in _JUDGEMENTS or self._judges(at)) and self.nouns.is_noun(at + 2))
             )
         ):
-            denied = any(word in NEGATIONS or word in _FORBIDDING for word in self.norms[:at])
-            used = "used" in self.norms[:at]  # 'it may be used to cut bread or to spread butter on it'
-            modal = None if denied or (self._is_told_to(at) and not used) else "might"
+            before = self.norms[:at]
+            spared = not _NECESSARY.isdisjoint(before)  # 'it is not necessary to put it there'
+            denied = any(word in NEGATIONS or word in _FORBIDDING for word in before)
+            used = "used" in before  # 'it may be used to cut bread or to spread butter on it'
+            told = denied or (self._is_told_to(at) and not used)
+            modal = None if told and not (denied and spared) else "might"
+            denied = denied and not spared
             return Chunk(
                 "PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", modal, positive=not denied)
             )
@@ -303,6 +311,9 @@ class FixedPhraseChunker(JointChunker):
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
                 return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
+        opens = norm in _STEPS and self._previous() in ("", "CUT") and self.norms[at + 1] == ","
+        if opens and (self._subject_or_command(at + 2) or self.norms[at + 2] in PUT_VERBS | prepositions().keys()):
+            return Chunk("ADVERB", at, at + 2, norm)  # 'next, set the fork on the tray'
         if (
             norm in _STEPS
             and self._previous() in ("", "CUT", "THEN", "AND", "COMMA")
@@ -444,6 +455,11 @@ class FixedPhraseChunker(JointChunker):
         group = VerbGroup("think", "other", "base", positive=positive, adverbs=("probably",))
         return (i, group) if self.nouns.starts(i) else None
 
+    def _judges(self, at: int) -> bool:
+        """Return True if the words before this one are an impersonal judgement: *it is no longer good form*."""
+        before = range(max(0, at - MAX_JUDGEMENT), at - 1)
+        return any(self.norms[k] == "it" and self.norms[k + 1] in IS_FORMS for k in before)
+
     def _impersonal(self, at: int) -> tuple[int, VerbGroup] | None:
         """Return the end and the verb of *it seems that*, *it could be that*, *it isn't true that*."""
         i, positive, modal, adverbs = at + 1, True, None, []
@@ -512,6 +528,25 @@ class FixedPhraseChunker(JointChunker):
             i += 1
             return i + (self.norms[i] in ("for", "on", "out", "up"))
         return i if self.norms[i - 1] in ("to", "go") and i > at + 2 else None
+
+    def _use(self, at: int) -> int | None:
+        """Return the end of a relative clause that tells who uses a thing, and how often: *the cups you use daily*."""
+        i = at + (self.norms[at] in ("that", "which"))
+        if self._previous() != "NP" or self.norms[i] not in _USERS:
+            return None
+        i += 1
+        while self.norms[i] in ADVERBS | _FREQUENCIES or self.norms[i] in ("'ll", "will", "can", "do", "don't", "not"):
+            i += 1
+        form = self._verbs.get(self.norms[i])
+        if form is None or form.lemma not in _USING:
+            return None
+        i += 1 + ((form.lemma, self.norms[i + 1]) == ("reach", "for"))
+        while self.norms[i] in _FREQUENCIES or self.norms[i : i + 2] in _FREQUENT_PAIRS:
+            i += 1 if self.norms[i] in _FREQUENCIES else 2
+        follows = self._verbs.get(self.norms[i])
+        said = self.norms[i] in IS_FORMS | MODALS.keys() or (follows is not None and follows.form in ("base", "s"))
+        ends = self.norms[i] in CLAUSE_ENDS | prepositions().keys() and self.norms[i] != "to"
+        return i if said or ends else None
 
     def _chooses(self, at: int) -> bool:
         """Return True if one of several things is meant: *there are six benches, and you want the leftmost one*."""
@@ -584,6 +619,9 @@ _JUDGEMENTS = word_set(
     " proper correct customary usual common traditional advisable idea convenient useful helpful wise sensible"
 )
 
+_NECESSARY = word_set("necessary required needed essential obligatory mandatory compulsory")
+"""Judgements whose denial leaves a choice."""
+
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
 
 _STEPS = word_set("first second third next last lastly finally")
@@ -595,6 +633,17 @@ _GOVERNORS = word_set(
     " is are step idea convenient wise sensible"
 )
 """Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
+
+_USERS = word_set("you we they i people guests everyone")
+"""Subjects of relative clauses that tell who uses a thing."""
+_USING = word_set("use need want like reach love eat drink wear own buy enjoy")
+_FREQUENCIES = word_set(
+    "most often daily frequently regularly rarely seldom occasionally sometimes weekly less least more always usually"
+    " later soon first"
+)
+_FREQUENT_PAIRS = (["every", "day"], ["every", "week"], ["all", "day"], ["each", "day"], ["the", "most"], ["a", "lot"],
+                   ["right", "away"], ["the", "least"], ["each", "morning"], ["every", "morning"])  # fmt: skip
+"""Words that tell how often a thing is used, which are not about its place."""
 
 _UNDER_OR_BEHIND = frozenset({"behind", "under", "underneath", "beneath", "between", "beside", "below", "next"})
 

@@ -125,7 +125,9 @@ class VerbChunker(RelatorChunker):
             elif norm in ("has", "have", "had") and self.norms[i + 1] == "to" and self._is_base(i + 2):
                 modal, i = "have to", i + 1
             elif norm in _TENDING and self.norms[i + 1] == "to" and self._is_base(i + 2):
-                modal, verb, i = _TENDING[norm], None if self.norms[i + 2] != "be" else verb, i + 1
+                spared = norm == "required" and not positive  # 'it is not required to stand on the mat'
+                modal = "need" if spared else _TENDING[norm]
+                verb, i = None if self.norms[i + 2] != "be" else verb, i + 1
             elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
                 adverbs += ["being"] * (norm == "being" and verb == "be")  # 'it is being cleaned'
                 verb, past = "be", past or norm in ("was", "were")
@@ -281,6 +283,9 @@ class VerbChunker(RelatorChunker):
             return None
         if norm == "left":
             return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past", past=True))
+        told = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["BE"]
+        if norm in ("put", "set", "spread") and told and self._predicate_after(i):
+            return Chunk("PART", at, end, _with(group, norm, "posture", "participle"))  # 'are commonly put on it'
         if (
             norm in ("lay", "put", "set")
             and self._previous() in ("", "AND", "COMMA", "THEN", "CUT")
@@ -337,7 +342,7 @@ class VerbChunker(RelatorChunker):
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
-            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS
+            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS | MODALS.keys()
             if (
                 self._previous() in ("", "COMMA")
                 and form.form == "past"

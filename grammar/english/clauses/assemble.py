@@ -233,8 +233,9 @@ class Assembly:
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
             one = subject.phrase.pronoun == "one" and bool(subject.phrase.adjectives)
-            if (subject.phrase.head or one) and not letting:
-                named = subject.phrase.determiner == "the" or subject.phrase.owner is not None
+            if (subject.phrase.head or subject.phrase.members or one) and not letting:
+                first, *_ = subject.phrase.members or (subject.phrase,)
+                named = first.determiner == "the" or first.owner is not None
                 handled = self.opens_list or (named and verb.group.positive)
                 mood = Mood.COMMAND if handled else mood  # 'mind the saw: it …', 'wash the jug. it …'
                 self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
@@ -621,6 +622,9 @@ class Assembly:
         phrase = thing.phrase
         *before, last = phrase.members or (phrase,)
         shared = () if any(member.predicates for member in before) else last.predicates
+        if not before and last.of is not None and last.of.predicates:  # 'he puts the cap of the jar on it'
+            shared = (*last.of.predicates, *shared)
+            phrase = replace(phrase, of=replace(last.of, predicates=()))
         if shared and before:  # 'I keep the jug and the bowl on a tray': both are on it
             phrase = replace(phrase, members=(*before, replace(last, predicates=())))
         elif shared:
@@ -738,7 +742,8 @@ class Assembly:
             clause = replace(clause, modal="may")
             if self.clauses[-1].modal in (None, "can"):
                 self.clauses[-1] = replace(self.clauses[-1], modal="may")
-        handled = clause.mood is Mood.COMMAND and clause.subject is not None and bool(clause.subject.head)
+        named = clause.subject is not None and bool(clause.subject.head or clause.subject.members)
+        handled = clause.mood is Mood.COMMAND and named
         placed = clause.subject is not None and bool(clause.subject.predicates)
         if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
             self.clauses.append(replace(clause, predicates=tuple(kept), guesses=self.guesses | clause.guesses))
@@ -777,10 +782,23 @@ def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple
     for predicate in predicates:
         phrase = predicate.arguments[0] if predicate.relation == "with" and predicate.arguments else None
         if phrase is not None and phrase.predicates and predicate.positive and predicate.subject_part is None:
-            absolute.append((replace(phrase, predicates=()), phrase.predicates))
+            absolute.append((replace(phrase, predicates=()), _with_own_aims(phrase.predicates)))
         else:
             kept.append(predicate)
     return kept, absolute
+
+
+def _with_own_aims(predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+    """Return *on top of the fork facing left*, which is said of a spoon, with the aim as that of the spoon."""
+    last = predicates[-1]
+    if len(last.arguments) != 1 or last.relation not in ("on", "above", "next_to", "under") or last.reversed:
+        return predicates
+    thing = last.arguments[0]
+    aims = tuple(p for p in thing.predicates if p.relation in ("facing", "pointing") and not p.arguments)
+    if not aims or len(aims) != len(thing.predicates) or thing.determiner != "the":
+        return predicates
+    bare = replace(thing, predicates=(), span=(thing.span[0], max(thing.span[0], aims[0].span[0])))
+    return (*predicates[:-1], replace(last, arguments=(bare,)), *aims)
 
 
 def _looking(built: Built, start: int) -> tuple[Built, Viewpoint | None]:
@@ -798,7 +816,8 @@ def _split_frames(predications: tuple[Predication, ...]) -> tuple[tuple[Predicat
     """Separate the viewpoint from what stands before a clause: *facing the window*, *from the door*."""
     top = [p for part in predications for p in part.predicates]
     nested = [q for p in top for argument in p.arguments for q in argument.predicates if q.relation == "facing"]
-    if not nested and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
+    seen_from = any(adverb.startswith("from ") for p in top[:1] for adverb in p.adverbs)  # 'from behind the desk, …'
+    if not nested and not seen_from and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
         return predications, None
     everything = tuple(p for part in predications for p in part.predicates)
     return (), viewpoint_of(everything)

@@ -35,7 +35,8 @@ def other_joints(chunks: list[Chunk]) -> Iterator[tuple[list[Chunk], bool]]:
     """
     joints = [
         i for i, chunk in enumerate(chunks)
-        if chunk.type in ("COMMA", "AND") and not _in_list(chunks, i) and not _joins_directions(chunks, i)
+        if chunk.type in ("COMMA", "AND")
+        and not (_in_list(chunks, i) or _joins_directions(chunks, i) or _shares_article(chunks, i))
     ]  # fmt: skip
     for i in joints[:MAX_OTHER_JOINTS]:
         copies = [replace(chunk) for chunk in chunks]
@@ -67,6 +68,15 @@ def _joins_directions(chunks: list[Chunk], at: int) -> bool:
     return before.type in ("OF", "ADV") or (before.type == "NP" and is_place(before.value))
 
 
+def _shares_article(chunks: list[Chunk], at: int) -> bool:
+    """Return True for *and* between two nouns with one article: *the knife and spoon*, *the cups and saucers*."""
+    if chunks[at].type != "AND" or [chunk.type for chunk in chunks[at - 1 : at + 2 : 2]] != ["NP", "NP"]:
+        return False
+    before, after = chunks[at - 1].value, chunks[at + 1].value
+    bare = bool(after.head) and after.determiner is None and after.owner is None and after.count is None
+    return bare and before.determiner is not None and after.plural <= before.plural
+
+
 def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentence:
     """Return the reading of a sentence to keep, with the predicates that a rival does not have.
 
@@ -94,6 +104,7 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
     if not rivals:
         return first
     kept, ours = first, _Propositions.by(first)
+    rejected = ours.all
     guessed = any(clause.guesses for clause in first.clauses) or bool(first.guesses)
     for theirs, other, _ in rivals:
         simpler = (theirs.odd, theirs.number) < (ours.odd, ours.number) and theirs.number <= ours.number
@@ -101,6 +112,8 @@ def settled(first: Sentence, others: Iterable[tuple[Sentence, bool]]) -> Sentenc
             kept, ours = other, theirs
     contested: set[Span] = set()
     for theirs, _, in_conjunction in rivals:
+        if kept is not first and theirs.all == rejected:
+            continue  # as the reading that was replaced
         if (in_conjunction or theirs.number < ours.number) and theirs.can_replace(ours):
             contested |= {span for span, proposition in ours.spans if not theirs.has(proposition)}
     return replace(kept, contested=frozenset(contested))

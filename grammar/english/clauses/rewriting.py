@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses import asides
 from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
 from deixis.grammar.english.clauses.ellipses import filled_in
@@ -27,6 +29,12 @@ from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PUT_VERBS, TRANSITIVE_RELATIONS, verb_forms
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
+_STORING = word_set(
+    "shelf drawer rack cupboard cabinet basket bin compartment crate locker tier pocket box hook peg closet wardrobe"
+)
+"""Places of which *for* tells what is kept in them: *the top shelf is for glasses*."""
+_RESERVED = frozenset({"dedicated", "dedicate", "reserved", "reserve", "meant", "mean", "intended", "intend"})
+"""Participles before *for* and *to* that tell what a place is for."""
 _LENGTHS = UNITS.keys() - word_set("hand finger thumb palm fist arm") | {"inche", "square"}
 """Words of the measure of a thing."""
 _ENDS = frozenset({"COMMA", "CUT", ""})
@@ -85,7 +93,10 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
+        _without_openings, _with_participles_of_posture, _with_purposes_of_places,
+        *(_without(find) for find in asides.FINDERS),
         _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without(_restriction_of_object),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
@@ -94,7 +105,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
         _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
         _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
-        _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
+        _with_shared_objects, _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -127,6 +138,10 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             named = Chunk("NP", of.start, of.end, noun, of.span)
             after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
             i = (closing or i) + 1
+            continue
+        if said and [c.type for c in inside[:2]] == ["NP", "REL"] and "COMMA" not in [c.type for c in inside]:
+            _leave_out(inside, "this says what the thing before is, not where it is")
+            i = (closing or i) + 1  # 'the rooks (the pieces that look like towers) go …'
             continue
         if said and {c.type for c in inside} <= _NAMES and sum(c.type == "NP" for c in inside) == 1:
             i = (closing or i) + 1  # 'the long panels (A) go …', 'under a tea towel (mice!)'
@@ -358,6 +373,71 @@ def _means(chunks: list[Chunk], at: int) -> _Run | None:
     return end, None
 
 
+def _without_openings(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out what opens a statement: *that means* before a clause, *next is* before the next thing."""
+    first = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    if len(chunks) < first + 3 or chunks[first + 2].type != "NP":
+        return chunks
+    opening, verb, thing = chunks[first : first + 3]
+    group = verb.value if isinstance(verb.value, VerbGroup) else None
+    if group is None or not group.positive or group.past:
+        return chunks
+    pointed = opening.type == "NP" and opening.value.pronoun in ("this", "that", "it") and not opening.value.head
+    clause = type_at(chunks, first + 3) in FINITE
+    if pointed and group.lemma == "mean" and group.modal is None and clause:
+        return chunks[first + 2 :]
+    adjectives = opening.value if opening.type == "ADJP" else ()
+    word = opening.value.head if opening.type == "NP" else opening.value
+    word = adjectives[0].word if len(adjectives) == 1 else word
+    if word != "next" or opening.end != opening.start + 1 or group.lemma not in ("be", "come"):
+        return chunks
+    placed = any(chunk.type in _PREDICATES for chunk in chunks[first + 3 :])
+    command = VerbGroup("place", "posture", "base") if placed else VerbGroup("take", "other", "base")
+    return [Chunk("PUT" if placed else "DO", opening.start, verb.end, command, opening.span), *chunks[first + 2 :]]
+
+
+def _with_participles_of_posture(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the candle is stood on the mat* with a participle."""
+    return [
+        replace(chunk, type="PART")
+        if chunk.type == "VERB" and chunk.value.lemma in ("stand", "sit") and chunk.value.form == "past"
+        and type_at(chunks, i - 1) == "BE" else chunk
+        for i, chunk in enumerate(chunks)
+    ]  # fmt: skip
+
+
+def _with_purposes_of_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the top shelf is for glasses* as *glasses are on the top shelf*; also *is reserved for*."""
+    cuts = [i for i, chunk in enumerate(chunks) if chunk.type == "CUT"]
+    found: list[Chunk] = []
+    for start, end in pairwise([0, *cuts, len(chunks)]):
+        found += _with_purpose_of_place(chunks[start:end])
+    return found
+
+
+def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
+    chunks = [chunk for chunk in whole if chunk.type != "ADVERB"]
+    first = next((i for i, chunk in enumerate(chunks) if chunk.type not in ("CUT", "COMMA")), 0)
+    types = [type_at(chunks, first + k) for k in range(4)]
+    told = types[2] == "PART" and chunks[first + 2].value.lemma in _RESERVED
+    at = first + 2 + told
+    if types[:2] != ["NP", "BE"] or type_at(chunks, at) != "PREP" or type_at(chunks, at + 1) != "NP":
+        return whole
+    place, be, relator, thing = chunks[first], chunks[first + 1], chunks[at].value, chunks[at + 1].value
+    end = at + 2
+    while [type_at(chunks, end), type_at(chunks, end + 1)] == ["AND", "NP"]:
+        end += 2
+    noun = last_word(place.value.head)
+    single = not (place.value.plural or be.value.modal or not be.value.positive)
+    fits = relator.preposition.phrase == "for" or (told and relator.preposition.phrase == "to")
+    named = bool(thing.head) and last_word(thing.head) not in PEOPLE and not thing.pronoun
+    if not (single and fits and named and noun in _STORING and type_at(chunks, end) in _ENDS):
+        return whole
+    inside = noun in VESSELS | HOLDERS
+    spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
+    return [*chunks[:first], *chunks[at + 1 : end], be, replace(chunks[at], value=spot), place, *chunks[end:]]
+
+
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
     """Find for whom a thing is: *put out a bowl for you*, *left you a cake*, *the glass for the guest right of it*."""
     if type_at(chunks, at - 1) in ("TVERB", "PUT") and type_at(chunks, at + 1) == "NP" and chunks[at].type == "NP":
@@ -526,6 +606,19 @@ def _relative_aside(chunks: list[Chunk], at: int) -> _Run | None:
         return None
     _leave_out(chunks[at + 1 : end], "this clause does not say where something is")
     return end + 1 if goes_on else end, None
+
+
+def _restriction_of_object(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find which things a command is about, before their place: *put the fruits that spoil quickly on the shelf*."""
+    if type_at(chunks, at) != "REL" or [type_at(chunks, k) for k in (at - 2, at - 1)] != ["PUT", "NP"]:
+        return None
+    verb = chunks[at + 1] if type_at(chunks, at + 1) == "VERB" else None
+    group = verb.value if verb is not None else None
+    placeless = ("other", "unknown", "transitive")
+    if not isinstance(group, VerbGroup) or group.kind not in placeless or group.lemma in TRANSITIVE_RELATIONS:
+        return None
+    end = next((k for k in range(at + 2, len(chunks)) if chunks[k].type != "ADVERB"), len(chunks))
+    return (end, None) if type_at(chunks, end) in ("PREP", "ADV") else None
 
 
 def _leave_out(chunks: list[Chunk], reason: str) -> None:
@@ -1074,6 +1167,32 @@ def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_shared_objects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the stand holds a cup below or behind the jug* with the jug after both prepositions.
+
+    After *have*, the second place would be that of the subject: *one side has a lamp above or below the box*.
+    """
+    found: list[Chunk] = []
+    end = 0
+    for i, chunk in enumerate(chunks):
+        if i < end:
+            continue
+        types = [type_at(chunks, i + k) for k in range(-2, 4)]
+        shares = types[:3] == ["TVERB", "NP", "ADV"] and types[3] in ("AND", "OR") and types[4:] == ["PREP", "NP"]
+        heights = ("above", "below", "behind", "in_front", "under")
+        if shares and chunk.value.preposition.relation in heights and chunks[i - 2].value.lemma == "have":
+            end = i + 4
+            if types[3] == "AND":
+                found += [replace(chunk, type="PREP"), replace(chunks[i + 3], start=chunk.end)]
+            _leave_out(chunks[i + (types[3] == "AND") : end], "this does not say which of the two is where")
+        elif shares and chunk.value.preposition.relation in heights:
+            shared = replace(chunks[i + 3], start=chunk.end, end=chunk.end)
+            found += [replace(chunk, type="PREP"), shared]
+        else:
+            found.append(chunk)
+    return found
+
+
 def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
     """Return the chunks with a comma before what tells how and where else a thing is put, after its place.
 
@@ -1099,6 +1218,8 @@ def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
             at -= 2
         place = found[at].value.preposition.relation if type_at(found, at) == "PREP" else ""
         of_place = place in ("on", "inside") and not _names_place(found, at + 1)  # 'on the shelf facing the door'
+        accompanied = [type_at(found, at - 2), type_at(found, at - 1)] == ["WITH", "NP"]  # whose aim this is
+        aims = aims and not accompanied
         if put and place and type_at(found, len(found) - 1) == "NP" and (aims or (not of_place and (turned or again))):
             found.append(put_in("COMMA", chunk))
         found.append(chunk)

@@ -25,8 +25,11 @@ from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
 
-AT_CORNER = re.compile(r"(?:at|in|on)\s+the\s+[\w-]+\s+(?:left|right)", re.IGNORECASE)
-"""Corner as a place, and not as a direction: *at the upper left*, not *to the upper left*."""
+AT_CORNER = re.compile(
+    r"(?:\b(?:at|in|on)\s+the\s+[\w-]+\s+|^(?:top|upper|bottom|lower)[\s-]+)(?:left|right)(?:\s+(?:position|spot|place))?$",
+    re.IGNORECASE,
+)
+"""Corner as a place, and not as a direction: *at the upper left* and *top left*, not *to the upper left*."""
 
 MAX_WORDS_AFTER = 3
 """Number of words between a relative clause and the pronoun that stands for its last thing."""
@@ -110,11 +113,24 @@ class Relations(Mentions):
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
             return  # 'fold it into a rectangle'
+        degree = self.text[: predicate.span[0]].casefold().split()[-1:]
+        if relation in ("near", "far") and degree in (["equally"], ["as"]):
+            return  # 'equally far from the cross' compares, and says no distance
+        if relation == "outside":
+            hollow = all(last_word(a.head) in VESSELS | HOLDERS for a in predicate.arguments)
+            if predicate.arguments and hollow and self.how.positive and not predicate.reversed:
+                self.how = replace(self.how, positive=False)  # 'outside the box' denies that it is inside
+                self._relate(subject, replace(predicate, relation="inside"), others)
+            return
         if relation in ("at", "on") and self._at_the_other(subject, predicate):
             return
         found: list[Entity | Region] = []
         restricted, end = self.restricted.get(subject, (None, 0))
         options = [a for a in predicate.arguments if a.joined_by == "or"]
+        if options and relation != "between" and not self.how.positive:
+            for member in options[0].members:  # 'not next to the jar or the box' denies both
+                self._relate(subject, replace(predicate, arguments=(member,)), others)
+            return
         if options and relation != "between" and not self.how.alternative:
             self.alternatives += 1
             outer = self.how
@@ -133,6 +149,9 @@ class Relations(Mentions):
             first, second = subject.leaves()
             self._pair(first, relation, second, False)
             self._pair(second, relation, first, False)
+            return
+        if predicate.reversed and [a.pronoun for a in predicate.arguments] == ["nothing"]:
+            self._add(f"none_{relation}", (subject,), ())  # 'the plate has nothing on it'
             return
         for phrase in predicate.arguments:
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
@@ -439,7 +458,7 @@ class Relations(Mentions):
         if last is not None and near and not last.how.guesses & UNANCHORED:
             self._add(predicate.relation, (subject,), last.arguments, value=last.value)
             return True
-        if not AT_CORNER.match(self.text[slice(*predicate.span)]):
+        if not AT_CORNER.search(self.text[slice(*predicate.span)]):
             return False
         self._add("part", (subject,), (), value=predicate.relation.replace("_", " "))
         return True
@@ -459,6 +478,11 @@ class Relations(Mentions):
         contrasted = self._of_the_other(subject, predicate.relation) if predicate.part is None else None
         if contrasted is not None:
             self._pair(subject, predicate.relation, contrasted, False)
+            return
+        across = self._side_of(subject, predicate)
+        if across is not None:
+            self.how = self._guessed(Guess.OF_THE_LAST)
+            self._pair(subject, predicate.relation, across, False)
             return
         beside = self.drafts[-1] if self.drafts else None
         person = beside is not None and not beside.arguments and beside.value in PEOPLE and beside.metres is None
@@ -510,6 +534,18 @@ class Relations(Mentions):
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
             self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _side_of(self, subject: Entity, predicate: Predicate) -> Entity | None:
+        """Return the thing of which *on the right* is the other side: *A on the left of the plate, B on the right*."""
+        opposite = OPPOSITES.get(predicate.relation)
+        if predicate.relation not in ("left", "right") or predicate.part is None or not self.how.positive:
+            return None
+        here = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation in ("left", "right")]
+        last = here[-1] if here else None
+        if last is None or last.relation != opposite or len(last.arguments) != 1 or not last.how.positive:
+            return None
+        thing = last.arguments[0]
+        return thing if thing.role is Role.THING and subject not in (*last.subjects, thing) else None
 
     def _of_the_other(self, subject: Entity, relation: str) -> Entity | None:
         """Return what the other one is on the other side of: *the box left of the desk … the one to the right*."""

@@ -15,7 +15,7 @@ colour: mauve, burgundy, charcoal, aqua, indigo, lavender, peach, colored, colou
 colour: creme, off-white, blonde, chocolate, mahogany, transparent, clear, opaque, shiny, dull, matte, glossy, blueish
 size: big, bigger, biggest, large, larger, largest, small, smaller, smallest, little, littler, littlest, tiny, huge
 size: medium, mini, giant, massive, enormous, medium-sized, full-size, oversized, compact, average, regular, mid-sized
-size: full-sized, miniature, petite, great, full, main
+size: full-sized, miniature, petite, great, full
 height: tall, taller, tallest, short, shorter, shortest, high, higher, highest, low, lower, lowest
 length: long, longer, longest
 width: wide, wider, widest, narrow, narrower, narrowest, broad, broader, broadest
@@ -45,6 +45,7 @@ other: correct, right, wrong, particular, specific, certain, nice, pretty, comfy
 other: modern, fancy, ornate, decorative, typical, normal, usual, additional, extra, remaining, various, visible, own
 other: immediate, direct, weird, strange, odd, funny, unusual, regular, standard, equal, interesting, exact, last, final
 other: distinct, matching, opposite, electric, digital, electronic, industrial, domestic, personal, available, real
+other: sturdy, steady, firm, rigid, robust, suitable, corresponding, respective, designated
 other: warm, hot, cold, fresh, large-scale, such, actual, prominent, noticeable, obvious, lefty, empty, busy, ergonomic
 """
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from deixis.grammar.english.vocabulary.adjectives import adjectives
 from deixis.grammar.english.vocabulary.function_words import (
     DETERMINERS,
     MODALS,
+    NUMBERS,
     OTHER_UNITS,
     POSSESSIVES,
 )
@@ -35,7 +37,7 @@ _ACTS = word_set(
     " order sequence priority preference need want wish desire demand use usage reach ease convenience help support"
     " advice guidance reminder warning caution care attention focus emphasis effort work play fun rest sleep exercise"
     " ritual ceremony celebration symbolism representation worship prayer blessing creation impact influence"
-    " observation experience event occasion matter fact detail information"
+    " observation experience event occasion matter fact detail information word"
 )
 _TIMES = word_set(
     "time moment second minute hour day night morning afternoon evening week weekend month season year century age"
@@ -71,9 +73,21 @@ _CONCRETE = word_set(
     " battlement pediment tenement condiment monument refreshment liniment embankment escarpment complement sediment"
     " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
-    " mechanism organism position"
+    " mechanism organism position settlement allotment"
 )
 """Words with the endings of abstract nouns that name things."""
+_QUALIFYING = ("ive", "ful", "less", "ous", "able", "ible", "iest", "cest", "gest")
+"""Endings of adjectives, and of the superlatives of those in *-y*, *-ce* and *-ge*."""
+_NOUNS_LIKE_QUALITIES = word_set(
+    "olive chive hive archive endive locomotive relative dive drive native adjective cursive fugitive captive votive"
+    " chives detective executive operative representative narrative motive missive alternative additive explosive"
+    " abrasive adhesive preservative sedative laxative digestive derivative directive perspective collective"
+    " handful spoonful armful mouthful"
+    " table timetable vegetable cable constable stable bible crucible dirigible collectible turntable worktable fable"
+    " variable wearable consumable disposable perishable edible convertible"
+    " negative positive digest"
+)
+"""Nouns with such endings."""
 _ADVERBS_NOT = word_set(
     "family jelly fly trolley lily belly butterfly assembly reply supply ply doily holly dolly brolly jolly ally"
     " curly woolly wooly early daily weekly friendly lovely silly ugly elderly monthly yearly living trolly gully"
@@ -86,17 +100,22 @@ _THIRD_PERSONS = word_set(
     " matters works brings draws guides leads invokes honours honors reflects means keeps"
 )
 """Verbs in the third person that are not nouns, besides those that tell a place."""
-_ONLY_VERBS = word_set("kneel sit lie belong remain include contain put")
+_VERBS_OF_CLAUSES = _THIRD_PERSONS | {"includes", "contains", "requires", "creates"}
+"""Verbs that no compound begins with."""
+_ONLY_VERBS = word_set(
+    "kneel sit lie belong remain include contain put create ensure represent symbolise symbolize provide require become"
+    " allow prevent"
+)
 """Verbs that are not the names of things, as *hold* and *keep* are."""
 _PARTICIPLES = word_set(
-    "placing putting positioning arranging adding keeping leaving making using moving including having"
+    "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using moving including having"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
 _OF_CLAUSES = (
     DETERMINERS
     | POSSESSIVES.keys()
     | MODALS.keys()
-    | word_set("once when while if because that which who then until not than")
+    | word_set("once when while if because that which who then until not than enough")
 ) - word_set("a single only same other need no can")
 """Words that stand in a clause and not inside a name; *can* is a vessel too, and *panel A* a name."""
 
@@ -140,16 +159,23 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     return last in _CONCRETE or not last.endswith(_ENDINGS)
 
 
+def _is_quality(word: str) -> bool:
+    """Return True for a word with the form of an adjective: *expensive*, *scarcest*, *shorter*."""
+    degree = adjectives().get(word) is not None and word.endswith(("er", "est"))
+    return degree or (word.endswith(_QUALIFYING) and word not in _NOUNS_LIKE_QUALITIES)
+
+
 def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     """Return True for a compound with a verb, an adverb or a function word among its words."""
     if len(words) == 1:
-        return words[0] in _ONLY_VERBS and not nouns.knows(words[0])
-    if words[0] in _THIRD_PERSONS | {"includes", "contains", "requires", "creates"}:
+        return not nouns.knows(words[0]) and (words[0] in _ONLY_VERBS | _VERBS_OF_CLAUSES or _is_quality(words[0]))
+    if words[0] in _VERBS_OF_CLAUSES:
         return True
     at = words.index("can") if "can" in words[1:-1] else 0
     if at and not nouns.knows(words[at + 1]):
         return True  # 'rules can vary', not 'garbage can lid'
-    if words[0] in _PARTICIPLES:
+    counted = words[0].endswith("ing") and not NUMBERS.keys().isdisjoint(words[1:-1])
+    if words[0] in _PARTICIPLES or counted:  # 'placing lids', 'drilling two screws'
         return True
     for place, word in enumerate(words):
         form = verb_forms().get(word)
