@@ -70,6 +70,8 @@ _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
 _LASTING = frozenset({"colour", "material", "contents", "ordinal"})
 """Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
+_OWN = frozenset({"size", "height", "length", "width", "thickness", "colour", "material", "shape"})
+"""Dimensions of adjectives that are true of one thing of a kind."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
 _COMPASS = frozenset({"north", "south", "east", "west"})
@@ -397,6 +399,8 @@ class References:
                 coloured & leaf.adjectives for leaf in entity.leaves()
             ):  # fmt: skip
                 continue  # 'the white pieces' after '12 pieces'
+            if _is_one_of_a_kind(phrase, entity):
+                continue
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
             if entity.group is not None and entity.group in self.entities:
@@ -985,6 +989,13 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
         return True  # but 'the left panel' is one of the side panels
     several = entity.members or entity.plural or entity.group is not None
     return not several or (any(d == "colour" for d, _ in distinguishing) and not phrase.plural)
+
+
+def _is_one_of_a_kind(phrase: NounPhrase, entity: Entity) -> bool:
+    """Return True for *the large knife* after *knives*: one of them, of which the adjective is true."""
+    kind = entity.plural and not (entity.single or entity.members) and not phrase.plural and phrase.determiner == "the"
+    told = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN and a.dimension in _OWN}
+    return kind and bool(told) and not told & entity.adjectives
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:
