@@ -29,9 +29,11 @@ from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PUT_VERBS
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
 _STORING = word_set(
-    "shelf drawer rack cupboard cabinet basket bin compartment crate locker tier pocket box hook peg closet wardrobe"
+    "shelf drawer rack cupboard cabinet basket bin compartment crate locker tier pocket hook peg closet wardrobe"
 )
 """Places of which *for* tells what is kept in them: *the top shelf is for glasses*."""
+_RESERVING = frozenset({"use", "reserve", "keep", "save", "dedicate"})
+"""Commands whose object with *for* tells what is kept in it."""
 _RESERVED = frozenset({"dedicated", "dedicate", "reserved", "reserve", "meant", "mean", "intended", "intend"})
 """Participles before *for* and *to* that tell what a place is for."""
 _LENGTHS = UNITS.keys() - word_set("hand finger thumb palm fist arm") | {"inche", "square"}
@@ -92,7 +94,9 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
-        _without_openings, _with_participles_of_posture, _with_purposes_of_places, _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside), _without(_restriction_of_object),
+        _without_openings, _with_participles_of_posture, _with_purposes_of_places, _without(_means),
+        _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without(_restriction_of_object),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without(_search), _without(_infinitive), _without(_caused), _without(_sought_in_vain), _without(_partition),
@@ -410,6 +414,8 @@ def _with_purposes_of_places(chunks: list[Chunk]) -> list[Chunk]:
 def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     chunks = [chunk for chunk in whole if chunk.type != "ADVERB"]
     first = next((i for i, chunk in enumerate(chunks) if chunk.type not in ("CUT", "COMMA")), 0)
+    if chunks and chunks[first].type in ("PUT", "DO", "FIND") and chunks[first].value.lemma in _RESERVING:
+        return _with_reserved_places(chunks, first) or whole
     types = [type_at(chunks, first + k) for k in range(4)]
     told = types[2] == "PART" and chunks[first + 2].value.lemma in _RESERVED
     at = first + 2 + told
@@ -422,12 +428,41 @@ def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     noun = last_word(place.value.head)
     single = not (place.value.plural or be.value.modal or not be.value.positive)
     fits = relator.preposition.phrase == "for" or (told and relator.preposition.phrase == "to")
-    named = bool(thing.head) and last_word(thing.head) not in PEOPLE and not thing.pronoun
+    named = _names_things(thing)
     if not (single and fits and named and noun in _STORING and type_at(chunks, end) in _ENDS):
         return whole
     inside = noun in VESSELS | HOLDERS
     spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
     return [*chunks[:first], *chunks[at + 1 : end], be, replace(chunks[at], value=spot), place, *chunks[end:]]
+
+
+def _names_things(phrase: NounPhrase) -> bool:
+    """Return True for *cups* and *the bread*, but not for *transport*, which may be an act, nor for persons."""
+    thing = bool(phrase.head) and last_word(phrase.head) not in PEOPLE and not phrase.pronoun
+    return thing and (phrase.plural or phrase.determiner == "the" or phrase.owner is not None)
+
+
+def _with_reserved_places(chunks: list[Chunk], at: int) -> list[Chunk] | None:
+    """Return *use the upper rack for cups and the lower rack for plates* as *put cups in the upper rack and …*."""
+    if not chunks[at].value.positive:
+        return None
+    made: list[Chunk] = [*chunks[:at], replace(chunks[at], type="PUT", value=VerbGroup("put", "posture", "base"))]
+    at += 1
+    while [type_at(chunks, at + k) for k in range(3)] == ["NP", "PREP", "NP"]:
+        place, relator, thing = chunks[at].value, chunks[at + 1].value, chunks[at + 2].value
+        noun = last_word(place.head)
+        kept = _names_things(thing) and not place.plural
+        if relator.preposition.phrase != "for" or noun not in _STORING or not kept:
+            return None
+        inside = noun in VESSELS | HOLDERS
+        spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
+        made += [chunks[at + 2], replace(chunks[at + 1], value=spot), chunks[at]]
+        at += 3
+        if type_at(chunks, at) not in ("AND", "COMMA") or type_at(chunks, at + 1) != "NP":
+            return [*made, *chunks[at:]] if type_at(chunks, at) in _ENDS else None
+        made.append(chunks[at])
+        at += 1
+    return None
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:

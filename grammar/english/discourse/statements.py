@@ -51,8 +51,9 @@ FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire"
 """Parts that reach to other places than their wholes."""
 
 NOT_STATES = word_set(
-    "need turn roll lay put place set leave open water know call referred name mean work pick choose use allow require"
-    " include exclude recommended dedicated devoted recommend suggest advise ask forget remember consider regard offer give hand drink eat keep say"
+    "need turn roll lay put place set leave open water know call referred name mean work pick choose use allow"
+    " require include exclude recommended dedicated devoted recommend suggest advise ask forget remember consider"
+    " regard offer give hand drink eat keep say"
 )
 """Verbs whose participles tell no state of a thing."""
 

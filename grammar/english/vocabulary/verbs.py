@@ -73,7 +73,8 @@ other: catch catches caught caught catching, break breaks broke broken breaking,
 other: hear hears heard heard hearing
 other: pay pays paid paid paying, light lights lit lit lighting, shut shuts shut shut shutting
 other: split splits split split splitting, feed feeds fed fed feeding, dig digs dug dug digging
-other: flow, drip, trickle, spoil, expire, perish, rot, wilt, melt, freeze freezes froze frozen freezing, strike strikes struck struck striking, win wins won won winning
+other: flow, drip, trickle, spoil, expire, perish, rot, wilt
+other: melt, freeze freezes froze frozen freezing, strike strikes struck struck striking, win wins won won winning
 other: shake shakes shook shaken shaking, spin spins spun spun spinning, cut cuts cut cut cutting
 other: pick, pluck, trap, squash, reach, arrive, enjoy, own, own, wish, decide, belong, blow blows blew blown blowing
 posture: ride rides rode ridden riding, rise rises risen risen rising, languish, lurk, bask, recline, jostle, flutter
