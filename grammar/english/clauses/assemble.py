@@ -786,7 +786,7 @@ def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple
 
 
 def _with_own_aims(predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
-    """Return *on top of the fork facing left*, which is said of a spoon, with the aim as that of the spoon."""
+    """Return *on top of the fork facing left*, with the aim as that of the spoon on it."""
     last = predicates[-1]
     if len(last.arguments) != 1 or last.relation not in ("on", "above", "next_to", "under") or last.reversed:
         return predicates

@@ -382,10 +382,9 @@ def _without_openings(chunks: list[Chunk]) -> list[Chunk]:
     clause = type_at(chunks, first + 3) in FINITE
     if pointed and group.lemma == "mean" and group.modal is None and clause:
         return chunks[first + 2 :]
-    adjectives = opening.value if opening.type == "ADJP" else ()
-    word = opening.value.head if opening.type == "NP" else opening.value
-    word = adjectives[0].word if len(adjectives) == 1 else word
-    if word != "next" or opening.end != opening.start + 1 or group.lemma not in ("be", "come"):
+    words = [a.word for a in opening.value] if opening.type == "ADJP" else [opening.value]
+    words = [opening.value.head] if opening.type == "NP" else words
+    if words != ["next"] or opening.end != opening.start + 1 or group.lemma not in ("be", "come"):
         return chunks
     placed = any(chunk.type in _PREDICATES for chunk in chunks[first + 3 :])
     command = VerbGroup("place", "posture", "base") if placed else VerbGroup("take", "other", "base")

@@ -816,9 +816,10 @@ class References:
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
         last = self.recent[0] if self.recent else None
-        named = last.subject if last is not None and last.relation is None and not last.others else None
-        if named is not None and named.members and not named.noun and relation is None and besides is None:
-            return named  # 'next is the cup and saucer. It goes …'
+        listed_last = last.subject if last is not None and last.relation is None and not last.others else None
+        pair = listed_last is not None and bool(listed_last.members) and not listed_last.noun
+        if pair and relation is None and besides is None:
+            return listed_last  # 'next is the cup and saucer. It goes …'
         parallel = last is not None and self.holder in ("inside", "on") and last.relation == self.holder
         if last is not None and parallel and relation != "under":
             held = last.others if last.sentence == self.sentence and last.subject is not besides else []

@@ -49,7 +49,7 @@ def test_sides_are_of_the_thing_named_for_the_other_side(text: str, expected: li
         ("Top left, we put the lime. Bottom right, we put the salt.",
          ["part(lime, 'top left')", "part(salt, 'bottom right')"]),
         ("The ribbons hang above and in the middle of the gate.", ["above(ribbons, gate)", "middle(ribbons, gate)"]),
-        ("The box is to be covered with a felt, at least on top.", ["on(felt, box)"]),
+        ("The box must be covered with a felt, at least on top.", ["on(felt, box)"]),
         ("A bust is stood in the middle of the plinth.", ["middle(bust, plinth)"]),
         ('The bell stands 3" from the edge of the mat.', ["distance(bell, mat, 'edge', 0.0762 m)"]),
         ("Put the jug behind the bowl, with the lid next to the jug facing up.",
