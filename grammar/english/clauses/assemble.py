@@ -228,6 +228,9 @@ class Assembly:
                 group = replace(group, positive=False)
                 built = replace(built, verbs=(replace(built.verbs[0], group=group), *built.verbs[1:]))
             self.forbids = not group.positive
+            if built.shape == "other" and not group.positive and group.kind == "unknown":
+                misunderstood(span, f"'{group.lemma}' does not say where something is not")
+                return  # 'do not dip the bread in the oil'
         letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]

@@ -374,7 +374,7 @@ def _without_openings(chunks: list[Chunk]) -> list[Chunk]:
     first = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
     if len(chunks) < first + 3 or chunks[first + 2].type != "NP":
         return chunks
-    opening, verb, thing = chunks[first : first + 3]
+    opening, verb = chunks[first : first + 2]
     group = verb.value if isinstance(verb.value, VerbGroup) else None
     if group is None or not group.positive or group.past:
         return chunks
@@ -574,7 +574,16 @@ def _infinitive(chunks: list[Chunk], at: int) -> _Run | None:
     """Find an infinitive with what belongs to it: *the bottle is too tall to stand on the shelf*."""
     chunk = chunks[at]
     to = chunk.type == "UNKNOWN" and chunk.value == "to" and type_at(chunks, at + 1) in ("UNKNOWN", "VERB", "TVERB")
-    return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES | {"REL"})) if to else None
+    end = end_before(chunks, at, JOINT_TYPES | {"REL"})
+    while to and [type_at(chunks, end + k) for k in (-1, 0, 1)] == ["NP", "OR", "NP"] and _is_bare(chunks[end + 1]):
+        end = end_before(chunks, end + 1, JOINT_TYPES | {"REL"})  # 'to spread jam or butter on bread'
+    return _unknown(chunks, at, end) if to else None
+
+
+def _is_bare(chunk: Chunk) -> bool:
+    """Return True for a noun phrase without an article, an owner and a number."""
+    phrase = chunk.value
+    return bool(phrase.head) and phrase.determiner is None and phrase.owner is None and phrase.count is None
 
 
 def _stranded(chunks: list[Chunk], at: int) -> _Run | None:
