@@ -43,7 +43,7 @@ from records import command_line, figure, recorded, share
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import detect
 from deixis.perception.simulator.films.camera_paths import CAMERA_PATHS, camera_path
-from deixis.perception.simulator.films.motion import FilmedFrame
+from deixis.perception.simulator.films.film import FilmedFrame
 from deixis.perception.simulator.films.stories import random_film
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import Situation

@@ -57,6 +57,7 @@ class OrientedBox:
     yaw: float
     extents: tuple[float, float, float]
 
+    @checks_arguments
     def rounded(self, digits: int) -> OrientedBox:
         """Return the box with rounded coordinates and extents.
 

@@ -45,6 +45,17 @@ class Echo(Module):
         write_together(lambda _: None, [board.part(Add(fluent))])
 
 
+class Stuck(Module):
+    """Hangs in its first call."""
+
+    name = "stuck"
+    reads: ClassVar = (Pattern(predicate="said"),)
+
+    def changed(self, change: Logged, board: Board) -> None:
+        """Wait for what never comes."""
+        threading.Event().wait()
+
+
 class Dying(Module):
     """Ends its own process as soon as it runs."""
 

@@ -38,6 +38,8 @@ class Guess(StrEnum):
     NO_THING = "these words are not the name of a thing that has a place"
 
 
+UNJOINED = frozenset({Guess.RUN_ON, Guess.CUT_SHORT})
+"""Guesses of where a clause begins and ends."""
 UNANCHORED = frozenset({Guess.OF_THE_LAST, Guess.OF_EARLIER})
 """Guesses of the thing that a direction is from."""
 

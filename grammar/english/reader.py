@@ -13,7 +13,7 @@ from deixis.grammar.english.discourse.drafts import Draft as FactDraft
 from deixis.grammar.english.discourse.entities import Entity, Role, names_of
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.telling.paraphrase import paraphrase
-from deixis.grammar.english.tree import Misunderstood, Mood, Sentence
+from deixis.grammar.english.tree import Clause, Misunderstood, Mood, Sentence
 from deixis.grammar.english.vocabulary.known_nouns import known_nouns
 from deixis.grammar.errors import Diagnostic, ScriptError
 from deixis.grammar.reading import DoubtfulPronoun, Reading, ReadSentence, StatedFact, joined_choices
@@ -197,7 +197,12 @@ class _Writer:
             for fact in facts
             if is_doubtful(Guess[name] for name in fact.guesses)
         ]
-        notes = sorted(dict.fromkeys((*sentence.misunderstood, *doubted)), key=lambda note: note.span)
+        silent = [
+            Misunderstood(clause.span, "this has no relation or property that a fact can state")
+            for clause in sentence.clauses
+            if not (facts or sentence.misunderstood) and _says_a_place(clause)
+        ]
+        notes = sorted(dict.fromkeys((*sentence.misunderstood, *doubted, *silent)), key=lambda note: note.span)
         return ReadSentence(
             text=" ".join(sentence.text.split()),
             span=sentence.span,
@@ -220,7 +225,7 @@ class _Writer:
     def _problem(self, span: tuple[int, int], reason: str, suggestion: str | None) -> Diagnostic:
         source = self.source(span)
         line = self.text[self.starts[source.line - 1] :].split("\n", 1)[0]
-        return Diagnostic(source, f"not understood: {reason}", line, f"write {suggestion!r}" if suggestion else None)
+        return Diagnostic(source, f"not understood: {reason}", line, _hint(suggestion))
 
     def statements(self, stated: StatedFact, reading: Reading) -> Iterator[Statement]:
         """Yield a fact or a claim as a statement of the layout language, unless it is about absent things."""
@@ -269,6 +274,19 @@ class _Writer:
             marks += [stated.condition] if stated.condition else []
             note = f"{content}" + (f"  ({', '.join(marks)})" if marks else "")
             yield Comment(note, Source(source.file, source.line, source.column, source.line, source.column), True)
+
+
+def _says_a_place(clause: Clause) -> bool:
+    """Return True for a statement or command that relates its subject to something."""
+    related = any(p.arguments for p in clause.predicates)
+    return clause.mood is not Mood.QUESTION and related and not (clause.condition or clause.past or clause.modal)
+
+
+def _hint(suggestion: str | None) -> str | None:
+    """Return a suggested wording in quotation marks, and an instruction as it is."""
+    if suggestion is None or suggestion.startswith(("say ", "deny ", "write ")):
+        return suggestion
+    return f"write {suggestion!r}"
 
 
 OPPOSITE_DIRECTIONS = {"left": "right", "viewer": "away", "near": "far", "front": "back", "up": "down"}

@@ -15,6 +15,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     HEDGES,
     IS_FORMS,
     MODALS,
+    NUMBERS,
     ORDINALS,
     PAST_FORMS,
     POSSESSIVES,
@@ -305,6 +306,22 @@ def _read_levels(words: list[Word]) -> None:
             del words[i + 1]
 
 
+def _read_opposites(words: list[Word]) -> None:
+    """Read *at opposite ends of the shelf* as *at both ends of the shelf*."""
+    for i in range(1, len(words) - 1):
+        facing = words[i].norm == "opposite" and words[i + 1].norm in ("ends", "edges", "corners")
+        if facing and words[i - 1].norm in ("at", "on", "in", "from", "near"):
+            words[i].norm = "both"
+
+
+def _read_and_or(words: list[Word]) -> None:
+    """Read *and/or*, which are three marks, as one *or*."""
+    for i in range(len(words) - 3, -1, -1):
+        if [word.norm for word in words[i : i + 3]] == ["and", "/", "or"]:
+            words[i].norm, words[i].end = "or", words[i + 2].end
+            del words[i + 1 : i + 3]
+
+
 def _read_setups(words: list[Word]) -> None:
     """Read *in a two-light set up* as one noun, and leave out *built-in* before a place."""
     for i in range(len(words) - 2, 1, -1):
@@ -444,6 +461,41 @@ def _deny_contrasts(words: list[Word]) -> None:
     for i in range(1, len(words) - 2):
         if (words[i].norm, words[i + 1].norm) in _CONTRASTS and words[i - 1].norm not in (";", ":", "."):
             words[i].norm, words[i + 1].norm = ",", "not"
+
+
+def _count_halves(words: list[Word]) -> None:
+    """Read *half a dozen* as 6, and *half of the eight cups* as *4 of the eight cups*."""
+    for i in range(len(words) - 3, -1, -1):
+        norms = [word.norm for word in words[i : i + 4]]
+        if norms[:3] == ["half", "a", "dozen"]:
+            words[i].norm, words[i].end = "6", words[i + 2].end
+            del words[i + 1 : i + 3]
+        elif (
+            len(norms) == 4 and norms[0] == "half" and norms[1] == "of" and norms[2] in DETERMINERS | POSSESSIVES.keys()
+        ):
+            number = NUMBERS.get(norms[3]) or (int(norms[3]) if norms[3].isdecimal() else 1)
+            if number % 2 == 0:
+                words[i].norm = str(number // 2)
+
+
+def _without_floating_each(words: list[Word]) -> None:
+    """Leave out *each* after the things that it is about: *the cups each have a lid*, *they have a lid each*."""
+    for i in range(len(words) - 1, 1, -1):
+        before, after = words[i - 1], words[i + 1].norm if i + 1 < len(words) else "."
+        if words[i].norm != "each" or not before.is_word:
+            continue
+        noun = before.norm not in _BEFORE_EACH and before.norm not in prepositions()
+        form = verb_forms().get(after)
+        verb = after in ("have", "are") or (form is not None and form.form == "base" and form.kind == "posture")
+        if (noun and (verb or after in (".", ",", ";", "!", "and"))) or (
+            before.norm in ("are", "were") and after in prepositions()
+        ):
+            words[i - 1].end = words[i].end
+            del words[i]
+
+
+_BEFORE_EACH = word_set("one and or but of with then have has are is were was be")
+"""Words after which *each* is a subject or a number of its own: *one each*."""
 
 
 def _depicted(text: str, span: Span) -> Iterator[Span]:
@@ -652,6 +704,8 @@ def words_of(text: str, span: Span) -> list[Word]:
                 found.append(Word(raw, ":", start, end, False))
             elif unicodedata.category(raw)[0] in "SMC" and raw not in "<>=":
                 continue  # a pictograph, or a mark of one
+            elif raw in _LENGTH_MARKS and found and _is_length(text, span, found[-1], start):
+                found[-1].norm, found[-1].end = f"{found[-1].norm}-{_LENGTH_MARKS[raw]}", end
             elif raw == "." and found and found[-1].norm in _ABBREVIATIONS and found[-1].end == start and end < span[1]:
                 continue
             elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|[]":
@@ -668,12 +722,16 @@ def words_of(text: str, span: Span) -> list[Word]:
     _join_asides(text, found)
     _read_hours(found)
     _read_levels(found)
+    _read_opposites(found)
+    _read_and_or(found)
     _read_setups(found)
     _without_settings(found)
     _read_facing_commands(found)
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)
+    _count_halves(found)
+    _without_floating_each(found)
     _without_corrected(found)
     _without_doubts_of_the_reader(text, span, found)
     _with_commands_after_places(found)
@@ -701,6 +759,18 @@ def words_of(text: str, span: Span) -> list[Word]:
             found[i].norm = "it"
             found.insert(i + 1, Word(found[i].text, "'s", found[i].start, found[i].end, False))
     return found
+
+
+_LENGTH_MARKS = {"'": "foot", "\u2019": "foot", "\u2032": "foot", '"': "inch", "\u201d": "inch", "\u2033": "inch"}
+"""Marks of feet and inches after a number, by their unit."""
+
+
+def _is_length(text: str, span: tuple[int, int], number: Word, at: int) -> bool:
+    """Return True for the mark of *the 8' boards*, and not for the end of a quotation that was begun before."""
+    mark = text[at]
+    opened = sum(text[span[0] : at].count(quote) for quote in {mark, "\u201c" if mark in '"\u201d' else mark})
+    apostrophes = len(re.findall(rf"(?<=\w){mark}(?=\w)", text[span[0] : at]))
+    return number.norm.isdigit() and number.end == at and (opened - apostrophes) % 2 == 0
 
 
 def _folded(raw: str) -> str:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from lark import Token
 from lark.lexer import TerminalDef
 
-from deixis.grammar.layout.words import KEYWORDS, first_word
+from deixis.grammar.layout.words import KEYWORDS, NOUNS_IN_LY, first_word
 from deixis.ontology.relations.relation import ARTICLES
 
 NOUN_PHRASE_TERMINALS = frozenset({"COUNT", "STRING", "COMPOUND"})
@@ -78,8 +78,12 @@ class Scanner:
                     continue
                 token.type = keyword
             if run:
-                yield from join(run, token.type)
+                adverb = run.pop() if is_adverb(run) else None
+                yield from join(run, token.type if adverb is None else "FUNCTION")
                 run = []
+                if adverb is not None:
+                    adverb.type = "FUNCTION"
+                    yield adverb
             if token.type == "COMPOUND":
                 token = _name([token], token.replace("_", " "))
             yield token
@@ -111,6 +115,29 @@ class Scanner:
             union = "|".join(f"(?P<{name}>{each.pattern(each.of_word[word])})" for name, each in known)
             self._compiled[word] = re.compile(union, re.IGNORECASE)
         return self._compiled[word].match(text, start)
+
+
+def is_adverb(run: Sequence[str]) -> bool:
+    """Return True if the last of several words is an adverb, which cannot end a name: *cup vertically*.
+
+    Parameters
+    ----------
+    run
+        Consecutive words that are not reserved.
+
+    Returns
+    -------
+    bool
+        False for a noun such as *jelly*, and for one word alone.
+
+    Examples
+    --------
+    >>> is_adverb(["cup", "vertically"]), is_adverb(["plum", "jelly"]), is_adverb(["Sally"])
+    (True, False, False)
+    """
+    last = run[-1].casefold()
+    several = sum(word.casefold() not in ARTICLES for word in run) > 1
+    return several and last.endswith("ly") and last not in NOUNS_IN_LY
 
 
 def join(run: list[Token], following: str) -> Iterator[Token]:

@@ -29,14 +29,14 @@ NUMBERS = {
 # Words that never occur in the name of a thing. One of them inside an unquoted name means that the sentence was not
 # understood, so it is an error instead of an object called "spoon to the".
 _FUNCTION_WORDS = """
-about across after against all almost along although am among any approximately around as aside at because
-been before being beside besides between both but by can close closer could diagonally did directly do does
-down during each either else every exactly far farther for further had has have he her here hers him his how i
-if immediately in into it its itself just may me might mine must my near nearer nearly neither next no nobody
-none nor nothing now of off once one only onto opposite other our out outside over per please precisely rather
-relative roughly she should since slightly so some such that their them then there these they this those
-though through throughout till to together too toward towards until up us very via was we were what when where
-whereas whether which while who whom whose why will with without would yet you your
+about across after against all almost along also although am among another any approximately around as aside at
+because been before being beside besides between both but by can close closer could diagonally did directly do does
+down during each either else even every exactly fairly far farther for further had has have he her here hers him
+his how i if immediately in into it its itself just may me might mine must my near nearer nearly neither next no
+nobody none nor nothing now of off once one only onto opposite other our out outside over per please precisely
+quite rather relative roughly she should since slightly so some somewhat such that their them then there these they
+this those though through throughout till to together too toward towards until up us very via was we were what when
+where whereas whether which while who whom whose why will with without would yet you your
 """
 # Forms of verbs that state no relation of the language; "lamp hangs on monitor" is no fact about a lamp_hangs.
 _OTHER_VERBS = """
@@ -50,6 +50,13 @@ DENIALS = frozenset(_DENIALS.split())
 _DEGREES = "least less more most"  # "left most" is one word: leftmost
 FUNCTION_WORDS = frozenset(f"{_FUNCTION_WORDS} {_OTHER_VERBS} {_DEGREES}".split()) | DENIALS
 NOUNS_TOO = frozenset({"can", "mine", "till"})  # function words that can also name a thing: a watering can
+
+_NOUNS_IN_LY = """
+ally anomaly assembly belly brolly bully butterfly doily dolly dragonfly family fly gully holly jelly lily lolly
+monopoly panoply rally reply supply tally telly
+"""
+NOUNS_IN_LY = frozenset(_NOUNS_IN_LY.split())
+"""Nouns with the ending of adverbs."""
 
 KEYWORDS: dict[str, str] = {
     **dict.fromkeys(FUNCTION_WORDS, "FUNCTION"),

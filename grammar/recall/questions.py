@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -30,6 +31,8 @@ WORDINGS = (
     "where was the fork before?",
     "where was the fork at noon?",
     "where was the fork at first?",
+    "where was the fork?",
+    "where did the cup go?",
     "where was the fork when the cup was taken away?",
     "what is on the plate?",
     "what was left of the plate before 12:30?",
@@ -67,6 +70,8 @@ WORDINGS = (
     "what did I say in the last 5 minutes?",
     "who showed you the fork?",
     "what happened since noon?",
+    "how many things were taken away since noon?",
+    "how long was the cup there?",
     "how many forks are on the plate?",
     "how many forks were there at noon?",
     "is there a ball?",
@@ -86,6 +91,33 @@ _NUMBERS = {
 } | {"a": "1", "an": "1", "half an": "0.5"}
 _NUMBER_WORDS = "|".join(sorted(_NUMBERS, key=len, reverse=True))
 _COUNTED = re.compile(rf"\b({_NUMBER_WORDS}) (?=(?:second|minute|hour|day|week)s?\b)")
+
+_ANYONE = r"(?:(?:any|some) ?(?:one|body)|i|we|you|people)"
+_REWORDED = tuple(
+    (re.compile(pattern), wording)
+    for pattern, wording in (
+        (r"^where (?:had|has|have) (.+?) been\b", r"where was \1"),
+        (r"^where did (.+?) used? to be\b", r"where was \1 before"),
+        (r"\b(?:has|have) gone\b", "went"),
+        (r"\b(?:has|have) come\b", "came"),
+        (r"\b(?:has|have) (?=(?:left|disappeared|vanished|arrived|appeared|moved)\b)", ""),
+        (r"^what have you been shown\b", "what was shown"),
+        (rf"^did {_ANYONE} (?:take|remove|clear) (.+?)(?: away)?(?=$| since| before| after| at| in| between)",
+         r"was \1 taken away"),
+        (rf"^what did {_ANYONE} (?:take|clear|remove)(?: away| off)?\b", "what was taken away"),
+        (rf"^did {_ANYONE} move\b (.+?)(?=$| since| before| after| at| in| between)", r"was \1 moved"),
+        (rf"^what did {_ANYONE} move\b", "what was moved"),
+        (rf"^what did {_ANYONE} (?:put|lay|set) down\b", "what was put down"),
+    )
+)  # fmt: skip
+"""Wordings that ask for the same as others, each a pattern and its replacement."""
+
+_ASKS = re.compile(
+    r"\s*(?:please |can you |tell me |do you (?:know|remember) )*"
+    r"(?:where|what|which|who|when|since when|how (?:many|long)|is|are|was|were|did|has|have)\b",
+    re.IGNORECASE,
+)
+"""Beginning of a text that may be a question."""
 
 
 class RecallQuestionError(DeixisError, ValueError):
@@ -118,7 +150,7 @@ class RecallQuestion:
 
     ``kind`` is the alternative of the grammar (``where``, ``related``, ``gone``, …), ``thing`` and ``other`` are nouns
     without articles, ``relation`` is the name of a relation, ``event`` what happened to the thing, ``speaker`` the
-    person named, and ``order`` ``first`` or ``last``.
+    person named, ``of_asker`` True if the person is the one who asks, and ``order`` ``first`` or ``last``.
     """
 
     text: str
@@ -130,6 +162,7 @@ class RecallQuestion:
     speaker: str | None = None
     order: str | None = None
     when: When = When()
+    of_asker: bool = False
 
 
 def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion:
@@ -164,6 +197,37 @@ def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion
     return _question(text, tree.children[0], ontology)
 
 
+def is_question(text: str, ontology: Ontology | None = None) -> bool:
+    """Return whether a text asks about then and now, also without a question mark, as recognised speech comes.
+
+    Parameters
+    ----------
+    text
+        A text in English.
+    ontology
+        Words of the relations; default: the shipped ones.
+
+    Returns
+    -------
+    bool
+        True if it ends in a question mark, or begins as a question and is understood.
+
+    Examples
+    --------
+    >>> is_question("where was the fork before"), is_question("When there is soup, the spoon is right of the plate.")
+    (True, False)
+    """
+    if text.strip().endswith("?"):
+        return True
+    if _ASKS.match(text) is None:
+        return False
+    try:
+        read_question(text, ontology)
+    except RecallQuestionError:
+        return False
+    return True
+
+
 def _plain(text: str) -> str:
     """Return a question in lower case, without punctuation, with contractions and numbers written out."""
     plain = text.lower().replace("\u2019", "'").replace("which ones", "which one")
@@ -174,6 +238,9 @@ def _plain(text: str) -> str:
     plain = re.sub(r"[?!,;\"]|\.(?=\s|$)", " ", plain)
     plain = re.sub(r"\b(a|p)\.m\.?(?=\s|$)", r"\1m", plain)
     plain = re.sub(r"^\s*((please|(can you )?tell me|do you (know|remember))\s+)+", "", plain)
+    plain = re.sub(r"\bwhich (?=did\b)|\bwhich (one )?of (them|these|those)\b", "which one ", plain)
+    for pattern, wording in _REWORDED:
+        plain = pattern.sub(wording, plain)
     plain = re.sub(r"\bstill\b|(?<=\w )here\b", "", plain)
     return " ".join(_COUNTED.sub(lambda found: f"{_NUMBERS[found[1]]} ", plain).split())
 
@@ -216,13 +283,14 @@ def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
     which = next((each for each in tree.children if _is(each, "what")), None)
     asked: list[str | None] = list(named) if which is None else [" ".join(each.children) for each in which.children]
     speaker = next((each.children[0] for each in tree.children if _is(each, "speaker")), None)
+    of_asker = _is_token(speaker, "ME") or any(_is_token(each, "ME") for each in tree.children)
     if kind == "shown_by":  # the last thing Bob showed
         kind, words = "shown", " ".join(named).split()
-        person = None if any(_is_token(each, "ME") for each in tree.children) or not words else words.pop()
+        person = None if of_asker or not words else words.pop()
         asked = [" ".join(words)] if words else []
     order = next((str(each.children[0]) for each in tree.children if _is(each, "order")), None)
     whens = [each for each in tree.children if isinstance(each, Tree) and each.data in _WHENS]
-    if kind in ("related", "present", "gone", "come", "moved", "shown", "how_many"):
+    if kind in ("related", "present", "gone", "come", "moved", "shown", "how_many", "how_many_did"):
         thing, other = (asked or [None])[0], (nouns or [None])[0]
     else:
         thing, other = (nouns or [None])[0], (nouns[1:] or [None])[0]
@@ -232,10 +300,11 @@ def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
         thing=thing,
         other=other,
         relation=None if relation is None else _relation_words(ontology)[_phrase(relation, ontology)],
-        event=_EVENTS[events[0].type](str(events[0])) if events and kind in ("when_did", "whether_did") else None,
+        event=_EVENTS[events[0].type](str(events[0])) if events and kind in _DONE else None,
         speaker=" ".join(map(str, speaker.children)) if isinstance(speaker, Tree) else person,
         order=order,
         when=_when(whens[0]) if whens else When(),
+        of_asker=of_asker,
     )
 
 
@@ -257,13 +326,18 @@ def _of_verb(verb: str) -> str:
     return "moved" if verb == "move" else "gone"
 
 
-_EVENTS = {
+_EVENTS: dict[str, Callable[[str], str]] = {
     "GONE": lambda _: "gone",
     "PLACED": lambda _: "come",
     "MOVED": lambda _: "moved",
     "SHOWN": lambda _: "shown",
     "VERB": _of_verb,
+    "WENT": lambda _: "gone",
+    "CAME": lambda _: "come",
 }
+
+_DONE = ("when_did", "whether_did", "how_many_did")
+"""Kinds of questions about what happened to things."""
 
 SECONDS = {"second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86_400.0, "week": 604_800.0}
 """Units of time in seconds."""

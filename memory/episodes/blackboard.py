@@ -24,6 +24,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from itertools import islice
+from numbers import Real
 from pathlib import Path
 from typing import Self
 
@@ -746,7 +747,10 @@ class Blackboard(Closing):
         EpisodeError
             If the window ends before it starts, or an end is not a number.
         """
+        _check_pattern(pattern)
         first, last = -math.inf if start is None else start, math.inf if end is None else end
+        if not (isinstance(first, Real) and isinstance(last, Real)):
+            raise EpisodeError(f"the ends of a window must be numbers of seconds, got {start!r:.40} and {end!r:.40}")
         if not first <= last:
             raise EpisodeError(f"a window must not end before it starts, got {first:g} to {last:g} s")
         with self._lock:
@@ -773,6 +777,7 @@ class Blackboard(Closing):
         tuple of EpisodicFluent
             The fluents in the order of their earliest starts and then ids.
         """
+        _check_pattern(pattern)
         with self._lock:
             self._check_open()
             found = list(self._open.values())
@@ -878,6 +883,8 @@ class Blackboard(Closing):
             If another subscriber has the name.
         """
         check_text(name, "the name of a subscriber")
+        if not callable(callback):
+            raise EpisodeError(f"`callback` must be a function of a change, got {callback!r:.60}")
 
         def trouble(line: str) -> None:
             self._trouble(line)
@@ -1046,6 +1053,8 @@ class Blackboard(Closing):
         staged: dict[str, EpisodicFluent | None] = {}
         made: list[tuple[Change, EpisodicFluent | None, EpisodicFluent | None]] = []
         for change in changes:
+            if type(change) not in KINDS or (isinstance(change, Add) and not isinstance(change.fluent, EpisodicFluent)):
+                raise EpisodeError(f"a change must be Add (of a fluent), Finish, Update or Delete, got {change!r:.60}")
             before = staged[change.id] if change.id in staged else self._fluent(change.id.encode())
             try:
                 staged[change.id] = change.applied(before)
@@ -1150,6 +1159,11 @@ def _index_keys(fluent: EpisodicFluent, ending: bytes) -> tuple[bytes, ...]:
     ends = interval_keys(fluent.start.lower, fluent.finish.upper, ending)
     statement = fluent.statement
     return *ends, _word_key(SUBJECT, statement.subject, ending), _word_key(PREDICATE, statement.predicate, ending)
+
+
+def _check_pattern(pattern: Pattern) -> None:
+    if not isinstance(pattern, Pattern):
+        raise EpisodeError(f"`pattern` must be a Pattern of subject, predicate and object, got {pattern!r:.60}")
 
 
 def _word_key(kind: bytes, word: str, ending: bytes) -> bytes:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import threading
 import time
+import weakref
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 
+from deixis.answers import count
 from deixis.memory.episodes.fluents.changes import Logged
 from deixis.memory.folder import one_line
 
@@ -19,6 +22,39 @@ PATIENCE = 1.0
 
 MAX_PAUSE = 5.0
 """Longest pause in seconds before a call that raised is repeated; the pause starts at 0.05 and doubles."""
+
+
+_watched: weakref.WeakSet[Subscription] = weakref.WeakSet()
+_watching = threading.Lock()
+_watcher: threading.Thread | None = None
+
+
+def _watch(subscription: Subscription) -> None:
+    """Have one thread of the process name the subscription if a call takes long, also if nothing more is written."""
+    global _watcher
+    with _watching:
+        _watched.add(subscription)
+        if _watcher is None or not _watcher.is_alive():
+            _watcher = threading.Thread(target=_keep_watch, name="watch over subscribers", daemon=True)
+            _watcher.start()
+
+
+def _keep_watch() -> None:
+    """Check all subscriptions now and then, until the last one has ended."""
+    global _watcher
+    while True:
+        time.sleep(PATIENCE / 2)
+        with _watching:
+            watched = list(_watched)
+            for each in watched:
+                if each.state.condition is Condition.ENDED:
+                    _watched.discard(each)
+            if not _watched:
+                _watcher = None
+                return
+        for each in watched:
+            with suppress(Exception):  # of a function that reports troubles
+                each.check()
 
 
 class Condition(Enum):
@@ -47,7 +83,7 @@ class SubscriberState:
 
     def __str__(self) -> str:
         cause = "" if self.error is None else f": {self.error}"
-        return f"the subscriber '{self.name}' is {self.condition.value}, {self.behind} changes behind{cause}"
+        return f"the subscriber '{self.name}' is {self.condition.value}, {count(self.behind, 'change')} behind{cause}"
 
 
 class Subscription:
@@ -77,12 +113,14 @@ class Subscription:
         self._called: float | None = None  # when the present call began
         self._error: str | None = None
         self._named_slow = False
+        self._naming = threading.Lock()
         self._moved = threading.Condition()
         self._thread = threading.Thread(target=self._run, name=f"subscriber {name}", daemon=True)
 
     def begin(self) -> None:
         """Start the thread."""
         self._thread.start()
+        _watch(self)
 
     def notify(self) -> None:
         """Wake the thread after a write."""
@@ -122,9 +160,11 @@ class Subscription:
 
     def check(self) -> None:
         """Name the subscriber once if its present call takes longer than ``PATIENCE``."""
-        if not self._named_slow and self.state.condition is Condition.SLOW:
+        with self._naming:
+            if self._named_slow or self.state.condition is not Condition.SLOW:
+                return
             self._named_slow = True
-            self._trouble(str(self.state))
+        self._trouble(str(self.state))
 
     def wait(self, sequence: int, timeout: float | None = None) -> bool:
         """Wait until the subscriber has been notified of all changes up to a sequence number.

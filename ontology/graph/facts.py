@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from deixis.arguments import require_fields
+from deixis.errors import GraphError
 from deixis.ontology.relations.relation import Relation
+from deixis.printable import visible_line
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -26,12 +29,13 @@ class Source:
         return f"{self.file}:{self.line}:{self.column}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Fact:
     """A statement that the subject stands in one of the relations to the object, or, if not ``positive``, in none.
 
     ``weight`` is above 0 and at most 1, and below 0.5 for a fact that is rarely true. An ``optional`` fact need not
-    hold. ``source`` is the place where the fact was written.
+    hold. ``source`` is the place where the fact was written. A field of another type is an ArgumentError, a weight
+    outside its range or a fact without a relation a GraphError.
 
     Examples
     --------
@@ -40,6 +44,8 @@ class Fact:
     >>> print(Fact("fork", (r["left"], r["top_left"]), "plate", weight=0.8))
     left or top_left(fork, plate)
     >>> fact = Fact("fork", (r["left"],), "plate", weight=0.2)
+    >>> fact
+    <Fact rarely left(fork, plate); weight 0.2>
     >>> fact.rare, fact.affirmed_weight, fact.plain, fact.relation_set == r["left"].bit
     (True, 0.8, False, True)
     """
@@ -51,6 +57,32 @@ class Fact:
     optional: bool = False
     weight: float = 1.0
     source: Source | None = None
+
+    def __post_init__(self) -> None:
+        if not self._has_usual_types():
+            require_fields(self)
+            object.__setattr__(self, "relations", tuple(self.relations))
+        if not self.relations:
+            raise GraphError("`relations` must have at least one relation, got none")
+        if not 0 < self.weight <= 1:
+            raise GraphError(f"`weight` must be above 0 and at most 1, got {self.weight}")
+
+    def _has_usual_types(self) -> bool:
+        """Return whether the fields need no further check; an inference makes 100,000 facts."""
+        return (
+            type(self.subject) is type(self.object) is str
+            and type(self.relations) is tuple
+            and {*map(type, self.relations)} == {Relation}
+            and type(self.positive) is type(self.optional) is bool
+            and type(self.weight) is float
+            and (self.source is None or type(self.source) is Source)
+        )
+
+    def __repr__(self) -> str:
+        notes = ["optional"] if self.optional else []
+        notes += [f"weight {self.weight:g}"] if self.weight != 1 else []
+        notes += [str(self.source)] if self.source is not None else []
+        return visible_line(f"<Fact {'; '.join([str(self), *notes])}>")
 
     def __str__(self) -> str:
         names = " or ".join(relation.name for relation in self.relations)

@@ -9,6 +9,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Protocol
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.inflection import singular
@@ -76,6 +77,7 @@ class LayoutConcept(Answer):
         parts += [count(len(self.claims), "claim")] if self.claims else []
         return f"'{self.name}' of lesson {self.lesson}: {', '.join(parts)}"
 
+    @checks_arguments
     def graph(self, vocabulary: Relations) -> RelationGraph:
         """Return the layout as a relation graph over its roles.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -116,14 +117,34 @@ class Situation:
         Scene
             An object for each thing that is there, with the id of the thing.
         """
-        things = [
-            PerceivedObject(
-                thing.id,
-                tuple(thing.box[0].round(6).tolist()),
-                tuple(thing.box[1].round(6).tolist()),
-                cloud=thing.cloud,
-                oriented=thing.oriented.rounded(6),
-            )
-            for thing in self.things
-        ]
-        return Scene(tuple(things), viewpoint=viewpoint, file=f"<frame at {self.at:.2f} s>")
+        return scene_of(self.things, self.at, viewpoint)
+
+
+def scene_of(things: Iterable[TrackedThing], at: float, viewpoint: str = "chair") -> Scene:
+    """Return tracked things as a scene, in the table's frame.
+
+    Parameters
+    ----------
+    things
+        The things.
+    at
+        Time of the frame in seconds.
+    viewpoint
+        Name of the side from which the camera looks.
+
+    Returns
+    -------
+    Scene
+        An object for each thing, with the id of the thing.
+    """
+    objects = [
+        PerceivedObject(
+            thing.id,
+            tuple(thing.box[0].round(6).tolist()),
+            tuple(thing.box[1].round(6).tolist()),
+            cloud=thing.cloud,
+            oriented=thing.oriented.rounded(6),
+        )
+        for thing in things
+    ]
+    return Scene(tuple(objects), viewpoint=viewpoint, file=f"<frame at {at:.2f} s>")

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.errors import GraphError, UnknownTermError
 from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import SettingError, UnknownCalculusError
@@ -170,6 +171,7 @@ class Related(Answer):
         """The signs of the atoms, by code."""
         return signs_of(self.calculus)
 
+    @checks_arguments
     def pairs(self, subject: str | None = None, object: str | None = None) -> Iterator[tuple[str, str, str]]:
         """Yield subject, sign and object of every ordered pair, or of the pairs with the given subject and object.
 
@@ -197,6 +199,7 @@ class Related(Answer):
                 if i != j:
                     yield self.ids[i], signs[row[j]], self.ids[j]
 
+    @checks_arguments
     def places(self, name: str | None) -> range:
         """Return the place of a thing among the ids as a range of length 1; all places if ``name`` is None.
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.ontology.relations.allen import Allen, members
 from deixis.reasoning.constraints.difference import ZERO, add_arrays
 from deixis.reasoning.errors import SettingError
@@ -114,6 +115,7 @@ class Chronology(Answer):
         except KeyError:
             raise UnknownFluentError("fluent", fluent_id, self._places) from None
 
+    @checks_arguments
     def start(self, fluent_id: str) -> Bounds:
         """Return the tightest bounds of a fluent's start.
 
@@ -129,6 +131,7 @@ class Chronology(Answer):
         """
         return self._bounds(fluent_id, _ORIGIN, _START)
 
+    @checks_arguments
     def finish(self, fluent_id: str) -> Bounds:
         """Return the tightest bounds of a fluent's finish.
 
@@ -144,6 +147,7 @@ class Chronology(Answer):
         """
         return self._bounds(fluent_id, _ORIGIN, _FINISH)
 
+    @checks_arguments
     def duration(self, fluent_id: str) -> Bounds:
         """Return the tightest bounds of the time from a fluent's start to its finish.
 
@@ -163,6 +167,7 @@ class Chronology(Answer):
         span = self.spans[:, self._place(fluent_id)].max(axis=0)
         return Bounds.from_codes(int(span[head, tail]), int(span[tail, head]))
 
+    @checks_arguments
     def held_at(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that certainly held at a time: start <= time < finish in every scenario.
 
@@ -185,6 +190,7 @@ class Chronology(Answer):
         """
         return self._chosen(self._certain(*_at(time)), pattern)
 
+    @checks_arguments
     def may_have_held(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that may have held at a time: start <= time < finish in some scenario.
 
@@ -207,6 +213,7 @@ class Chronology(Answer):
         """
         return self._chosen(self._possible(*_at(time)), pattern)
 
+    @checks_arguments
     def held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that certainly held throughout a window, in every scenario.
 
@@ -226,6 +233,7 @@ class Chronology(Answer):
         """
         return self._chosen(self._certain(*_throughout(window)), pattern)
 
+    @checks_arguments
     def may_have_held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that may have held throughout a window, in some scenario.
 
@@ -245,6 +253,7 @@ class Chronology(Answer):
         """
         return self._chosen(self._possible(*_throughout(window)), pattern)
 
+    @checks_arguments
     def held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that certainly held at some time in a window, in every scenario.
 
@@ -264,6 +273,7 @@ class Chronology(Answer):
         """
         return self._chosen(self._certain(*_within(window)), pattern)
 
+    @checks_arguments
     def may_have_held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that may have held at some time in a window, in some scenario.
 
@@ -304,6 +314,7 @@ class Chronology(Answer):
             f for f, chosen in zip(self.fluents, which, strict=True) if chosen and pattern.matches(f.statement)
         )
 
+    @checks_arguments
     def relations(self, a: str, b: str) -> tuple[Allen, ...]:
         """Return the Allen relations that one fluent may have to another.
 
@@ -319,6 +330,7 @@ class Chronology(Answer):
         """
         return members(int(self.masks[self._place(a), self._place(b)]))
 
+    @checks_arguments
     def certain_order(self, a: str, b: str) -> TemporalOrder | None:
         """Return the certain order of two fluents.
 
@@ -342,6 +354,7 @@ class Chronology(Answer):
             return TemporalOrder.FOLLOWS
         return None if mask & (_PRECEDES | _FOLLOWS) else TemporalOrder.CONCURRENT
 
+    @checks_arguments
     def certain_orders(
         self, window: Window | None = None, pattern: Pattern = ANYTHING
     ) -> tuple[tuple[Fluent, TemporalOrder, Fluent], ...]:

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.activities.prediction import Prediction
     from deixis.reasoning.description_logic.entailment import Entailment
     from deixis.reasoning.grounding.answers.answer import Grounding
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
     from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.reasoning.qualitative.relate import Related
     from deixis.reasoning.temporal.chronology import Chronology
@@ -94,6 +95,7 @@ __all__ = [
     "Lint",
     "Look",
     "Match",
+    "Meaning",
     "OrientedBox",
     "PerceivedObject",
     "Placements",
@@ -167,6 +169,7 @@ _HOMES = {
     "Lint": "deixis.workflows.layouts.lint",
     "Look": "deixis.robot.looking",
     "Match": "deixis.ontology.lessons.types",
+    "Meaning": "deixis.reasoning.grounding.evidence.words.meaning",
     "OrientedBox": "deixis.perception.scene",
     "PerceivedObject": "deixis.perception.scene",
     "Placements": "deixis.workflows.knowledge.habits",

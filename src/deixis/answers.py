@@ -11,6 +11,7 @@ import json
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from deixis.arguments import checks_arguments
 from deixis.printable import visible_line
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ class Answer:
         """
         return _renderers().to_dict(self)  # type: ignore[no-any-return]
 
+    @checks_arguments
     def to_json(self, indent: int | None = 2) -> str:
         """Return :meth:`to_dict` as JSON text.
 
@@ -94,6 +96,7 @@ class Answer:
         """
         return _renderers().to_dataframe(self)
 
+    @checks_arguments
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the answer, seen from above.
 

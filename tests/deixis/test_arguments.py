@@ -17,6 +17,7 @@ import deixis
 from deixis import arguments
 from deixis.arguments import checks_arguments, require_fields
 from deixis.errors import ArgumentError, DeixisError
+from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.workflows.knowledge.unlearn import Selection
 
@@ -104,6 +105,29 @@ def test_fields_of_a_record_are_checked() -> None:
         Selection(lesson=3)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"relations": ("left",)}, "`relations` must be a list of Relations, got ('left',)"),
+        ({"relations": ()}, "`relations` must have at least one relation, got none"),
+        ({"subject": 3}, "`subject` must be a string, got 3"),
+        ({"positive": "no"}, "`positive` must be True or False, got 'no'"),
+        ({"weight": 0}, "`weight` must be above 0 and at most 1, got 0"),
+        ({"weight": float("nan")}, "`weight` must be above 0 and at most 1, got nan"),
+        ({"source": "supper.layout"}, "`source` must be a Source or None, got 'supper.layout'"),
+    ],
+)
+def test_fields_of_a_fact_are_checked(given: dict[str, Any], message: str) -> None:
+    left = default_ontology().relations["left"]
+    with pytest.raises(DeixisError, match=f"^{re.escape(message)}$"):
+        deixis.Fact(**{"subject": "fork", "relations": (left,), "object": "plate"} | given)
+
+
+def test_the_relations_of_a_fact_may_be_a_list() -> None:
+    left = default_ontology().relations["left"]
+    assert deixis.Fact("fork", [left], "plate") == deixis.Fact("fork", (left,), "plate")  # type: ignore[arg-type]
+
+
 def _is_protocol(kind: type) -> bool:
     return bool(getattr(kind, "_is_protocol", False))
 
@@ -114,9 +138,22 @@ def _public() -> Iterator[tuple[str, Callable[..., Any]]]:
         if inspect.isfunction(found := getattr(deixis, name)):
             yield name, found
     for kind in (deixis.Session, deixis.Robot):
-        for name, method in inspect.getmembers(kind, inspect.isfunction):
-            if not name.startswith("_") and len(inspect.signature(method).parameters) > 1:
-                yield f"{kind.__name__}.{name}", method
+        yield from _methods(kind)
+
+
+def _methods(kind: type) -> Iterator[tuple[str, Callable[..., Any]]]:
+    """Yield the public methods of a class that have a parameter."""
+    for name, method in inspect.getmembers(kind, inspect.isfunction):
+        if not name.startswith("_") and len(inspect.signature(method).parameters) > 1:
+            yield f"{kind.__name__}.{name}", method
+
+
+def _methods_of_exported_classes() -> Iterator[tuple[str, Callable[..., Any]]]:
+    """Yield the methods of all other exported classes, those of base classes once."""
+    kinds = [kind for name in deixis.__all__ if inspect.isclass(kind := getattr(deixis, name))]
+    found = [each for kind in kinds if kind not in (deixis.Session, deixis.Robot) for each in _methods(kind)]
+    unchecked = deixis.PointCloud.take  # NumPy checks its array
+    yield from {method: (name, method) for name, method in found if method is not unchecked}.values()
 
 
 @pytest.mark.parametrize("kind", [Scene, deixis.PerceivedObject, deixis.OrientedBox, Selection])
@@ -140,7 +177,14 @@ def test_every_public_function_checks_its_arguments(name: str, function: Callabl
         function(*([deixis.Session(tmp_path / "memory")] if "." in name else []), **given)
 
 
-@pytest.mark.parametrize(("name", "function"), list(_public()))
+@pytest.mark.parametrize(("name", "method"), list(_methods_of_exported_classes()))
+def test_methods_of_exported_classes_check_their_arguments(name: str, method: Callable[..., Any]) -> None:
+    required = [p for p in inspect.signature(method).parameters.values() if p.name != "self"]
+    with pytest.raises(DeixisError, match=r"^`.*` must be "):
+        method(None, **{p.name: object() for p in required})
+
+
+@pytest.mark.parametrize(("name", "function"), [*_public(), *_methods_of_exported_classes()])
 def test_each_name_in_a_checked_annotation_is_a_class(name: str, function: Callable[..., Any]) -> None:
     function = inspect.unwrap(function)
     module = inspect.getmodule(function)

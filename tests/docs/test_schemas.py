@@ -20,6 +20,8 @@ from source_tree import ROOT
 import deixis
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
+from deixis.ontology.models.sizes import SizeModel
+from deixis.ontology.rdf.vocabulary import BASE
 from deixis.reasoning.temporal.bounds import Bounds
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -136,8 +138,8 @@ CASES = [
 OF_INPUT = {"skeleton", "utterance"}
 """Schemas of lines of files that Deixis reads."""
 
-OF_ROBOT = {"look", "told"}
-"""Schemas of answers of a robot, which no command prints."""
+OF_PYTHON = {"look", "meaning", "told"}
+"""Schemas of answers that no command prints."""
 
 
 def errors(name: str, answer: Any) -> list[str]:
@@ -236,7 +238,7 @@ def test_every_command_with_json_has_a_schema_on_the_page() -> None:
         if "--json" in options(command, context)
     }
     assert known and _listed().keys() == known
-    assert set().union(*_listed().values()) | {"fact", "claim", *LINES, *OF_INPUT, *OF_ROBOT} == SCHEMAS.keys()
+    assert set().union(*_listed().values()) | {"fact", "claim", *LINES, *OF_INPUT, *OF_PYTHON} == SCHEMAS.keys()
 
 
 def test_answers_of_every_command_are_validated() -> None:
@@ -294,6 +296,18 @@ def test_answers_of_a_robot_have_their_schema(tmp_path: Path) -> None:
         robot.sees(replace(table, objects=table.objects[1:]), at=2.0)
         assert robot.look().faults()
         assert errors("look", robot.look()) == []
+
+
+def test_learned_words_and_sizes_have_their_schema(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        session.learn(EXAMPLES / "formal_dinner.layout", EXAMPLES / "place_setting.labelled.scene.json")
+        session.learn_relations()
+        sizes = {f"{BASE}Fork": SizeModel((-1.7, 0.1), (-2.0, 0.2), views=3.0)}
+        meaning = replace(session.meaning(), sizes=sizes)
+    assert repr(meaning) == "<Meaning graded words with 5 learned models, learned sizes of 1 kind>"
+    assert meaning.to_text().splitlines()[-1] == "dx:Fork          length 0.183 m, aspect 0.14"
+    assert errors("meaning", meaning) == []
+    assert len(meaning.to_text().splitlines()) == 1 + len(meaning.models_in_force.models) + len(meaning.sizes)
 
 
 def test_facts_of_graded_words_have_their_schema() -> None:

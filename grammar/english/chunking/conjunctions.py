@@ -145,6 +145,8 @@ class JointChunker(VerbChunker):
             return Chunk("PREP", at, at + 1, Relator(Preposition("about", "around")))  # 'scattered about it'
         if (norm == "but" and excepting) or about:
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))
+        if norm == "then" and self._goes_on_after(at):
+            return Chunk("ADVERB", at, at + 1, norm)
         if norm in _CONJUNCTIONS:
             return Chunk(_CONJUNCTIONS[norm], at, at + 1, norm)
         if tuple(self.norms[at : at + 3]) in _SUBORDINATING:
@@ -186,6 +188,15 @@ class JointChunker(VerbChunker):
         ):
             return Chunk("SUB", at, at + 1, norm)
         return None
+
+    def _goes_on_after(self, at: int) -> bool:
+        """Return True for *then* inside a clause: *the lid is then placed on it*, *the cook then puts it on*."""
+        after = self.norms[at + 1]
+        form = self._verbs.get(after)
+        if self._previous() == "BE":
+            return (form is not None and form.form in ("past", "participle")) or after.endswith(("ed", "ly"))
+        third = form is not None and form.form == "s" and not self.nouns.is_known_noun(after)
+        return self._previous() == "NP" and (third or after in IS_FORMS or after in MODALS)
 
     def _is_event(self, at: int) -> bool:
         """Return True for a noun phrase that names an event: *your first shift*."""

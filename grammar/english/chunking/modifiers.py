@@ -260,10 +260,12 @@ class ModifierFinder(NounFinder):
     def _free(self, at: int) -> bool:
         """Return True if no noun stands before this word."""
         before = self.norms[at - 1] if at else ""
-        return not before or before in self._closed or not before[0].isalpha()
+        return not before or before in self._closed or not before[0].isalpha() or self.follows_command(at)
 
     def _noun_by_position(self, at: int) -> bool:
         before = self.norms[at - 1] if at else ""
+        if self.norms[at + 1] == "," and self.norms[at] != "orange" and self._nounish(at + 3):
+            return False  # 'on a flat, stable surface'
         return (before in ("a", "an") and self.norms[at] in ("orange", "square", "cream", "flat")) or (
             before in ("the", "some", "and", "with", "of", ",")
             and self.norms[at] in ("orange", "cream", "charcoal", "lavender")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from deixis.grammar.english.chunking.modifiers import ModifierFinder
 from deixis.grammar.english.chunking.noun_positions import GENERIC_NOUNS, NOUN_OR_PREPOSITION
 from deixis.grammar.english.tree import Adjective, NounPhrase
@@ -88,6 +90,14 @@ class NounChunker(ModifierFinder):
             plural = norms[i] in PLURAL_PRONOUNS
             return i + 1, NounPhrase(self._span(start, i + 1), pronoun=pronoun, plural=plural, negated=negated), ()
         while norms[i] in DETERMINERS and not (norms[i] == "another" and norms[i + 1] in self._closed):
+            if (
+                norms[i] == "other"
+                and determiner == "the"
+                and norms[i + 1] in ("left", "right")
+                and norms[i + 2] == "of"
+            ):
+                phrase = NounPhrase(self._span(start, i + 1), "", "the", pronoun="other", negated=negated)
+                return i + 1, phrase, ()  # 'one left of the cross, the other right of it'
             if norms[i] == "single" or (
                 norms[i] == "other" and determiner and not self._continues(i + 1) and self.number(i + 1) is None
             ):
@@ -123,7 +133,11 @@ class NounChunker(ModifierFinder):
                 count, i = int(number), i + 1
                 i, more = self._modifiers(i, True)
                 found += more
-        return self._head(start, i, determiner, count, found, owner, negated)
+        end, phrase, modifiers = self._head(start, i, determiner, count, found, owner, negated)
+        measured = phrase is not None and determiner in ("a", "an") and (count or 0) > 1 and bool(phrase.head)
+        if phrase is not None and measured and not self._nouns.singular(norms[end - 1])[1]:
+            phrase = replace(phrase, count=None, plural=False)  # 'a five piece drum set', but 'a dozen eggs'
+        return end, phrase, modifiers
 
     def _counts_one(self, at: int) -> bool:
         """Return True if *one* is a number here: *one saucer*, and not *the one near the door*."""

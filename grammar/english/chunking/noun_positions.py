@@ -272,7 +272,24 @@ class NounFinder:
             return True
         after_preposition = at > 0 and (self.norms[at - 1] == "of" or self.norms[at - 1] in prepositions())
         shaped = norm.endswith("ed") and len(norm) > 4 and self._nouns.knows(self.norms[at + 1])
-        return after_preposition and shaped and self.is_noun(at + 1)  # 'with crumpled paper'
+        ordered = shaped and self.follows_command(at)
+        return (after_preposition or ordered) and shaped and self.is_noun(at + 1)  # 'with crumpled paper'
+
+    def follows_command(self, at: int) -> bool:
+        """Return True after the verb of a command where a clause begins: *put crumpled* in *put crumpled paper*.
+
+        Parameters
+        ----------
+        at
+            Index of the word after the verb.
+
+        Returns
+        -------
+        bool
+            True if the word before can only be the verb of a command there.
+        """
+        begins = at == 1 or (at > 1 and self.norms[at - 2] in ("and", "then", ",", ";", ":"))
+        return begins and self.norms[at - 1] in PUT_VERBS
 
     def is_participle_of_one(self, at: int) -> bool:
         """Return True for an unknown participle before *one* or *ones*: *unfired ones*.
@@ -465,11 +482,17 @@ class NounFinder:
         stands = form.form == "s" and form.kind in ("posture", "lean") and self.is_determiner(at + 1)
         if stands and (before in PLACE_NOUNS or (is_adjective(before) and self._nouns.knows(before))):
             return False  # 'in the middle stands the crucifix'
+        one = at > 1 and self.norms[at - 2] in _SINGULAR and is_adjective(before) and self._nouns.knows(before)
+        if one and form.form == "s" and form.kind != "posture" and self.is_determiner(at + 1):
+            return False  # 'this light creates a glow'
         holds = form.form == "s" and form.kind == "transitive" and before in PLACE_NOUNS and self._nounish(at + 1)
         if holds and not is_adjective(self.norms[at - 2]) and self.is_determiner(at - 2):
             return False  # 'the one in the middle holds buttons'
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
+        tools = form.form == "s" and form.lemma in _PLURALS_LIKE_VERBS and "with" in self.norms[max(0, at - 3) : at]
+        if tools and not any(self.is_determiner(k) for k in range(max(0, at - 3), at)):
+            return True  # 'fix it with long wood screws in the holes'
         accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
         if accompanied and form.form == "s" and self._nouns.singular(norm)[1]:
             return not (spatial and self._awaits_verb(at - 3))  # 'with the cotton rolls behind it'
@@ -910,6 +933,9 @@ _AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at
 """Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""
 
 _LATIN_PLURALS = ("ae", "i", "a")
+
+_SINGULAR = word_set("a an this that each every another")
+"""Determiners of one thing, after which a word in *-s* is a verb."""
 
 _NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
 

@@ -52,7 +52,12 @@ def possible_verbs(chunks: list[Chunk], words: list[Word], nouns: KnownNouns) ->
             form = verb_forms().get(norm)
             follows = norms[at + 1] in _relating()
             if at > chunk.start and chunk.type == "NP":
-                told_apart = at == chunk.start + 2 and norms[chunk.start] == "the" and is_adjective(norms[at - 1])
+                told_apart = (
+                    at == chunk.start + 2
+                    and norms[chunk.start] == "the"
+                    and (is_adjective(norms[at - 1]) or norms[at - 1] == "other")
+                )
+                told_apart = told_apart or norms[chunk.start : at] in (["the", "other", "one"], ["one"], ["another"])
                 third = form is not None and form.form == "s"  # 'the leftmost holds sand'
                 inner = before in ("WITH", "OF", "PREP") and form is not None and form.form == "s"
                 agrees = inner or _agrees(norms[at - 1], norm, form is not None and form.form, nouns)

@@ -401,8 +401,8 @@ _ROLLED = word_set("rolled folded propped stacked piled wrapped coiled curled dr
 """Participles of which *up* is a part."""
 
 _AFTER_RIGHT = word_set(
-    "up down along across over in on at by behind next above below under underneath beside against between opposite"
-    " there"
+    "up down along across over in on at by behind next above below under underneath beneath beside against between"
+    " opposite inside outside near around after before to there"
 )
 """Words before which *right* is an adverb."""
 

@@ -283,6 +283,9 @@ class VerbChunker(RelatorChunker):
             return None
         if norm == "left":
             return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past", past=True))
+        told = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["BE"]
+        if norm in ("put", "set", "spread") and told and self._predicate_after(i):
+            return Chunk("PART", at, end, _with(group, norm, "posture", "participle"))  # 'are commonly put on it'
         if (
             norm in ("lay", "put", "set")
             and self._previous() in ("", "AND", "COMMA", "THEN", "CUT")
@@ -339,7 +342,7 @@ class VerbChunker(RelatorChunker):
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
-            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS
+            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS | MODALS.keys()
             if (
                 self._previous() in ("", "COMMA")
                 and form.form == "past"

@@ -625,6 +625,9 @@ class Assembly:
         phrase = thing.phrase
         *before, last = phrase.members or (phrase,)
         shared = () if any(member.predicates for member in before) else last.predicates
+        if not before and last.of is not None and last.of.predicates:  # 'he puts the cap of the jar on it'
+            shared = (*last.of.predicates, *shared)
+            phrase = replace(phrase, of=replace(last.of, predicates=()))
         if shared and before:  # 'I keep the jug and the bowl on a tray': both are on it
             phrase = replace(phrase, members=(*before, replace(last, predicates=())))
         elif shared:
@@ -816,7 +819,8 @@ def _split_frames(predications: tuple[Predication, ...]) -> tuple[tuple[Predicat
     """Separate the viewpoint from what stands before a clause: *facing the window*, *from the door*."""
     top = [p for part in predications for p in part.predicates]
     nested = [q for p in top for argument in p.arguments for q in argument.predicates if q.relation == "facing"]
-    if not nested and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
+    seen_from = any(adverb.startswith("from ") for p in top[:1] for adverb in p.adverbs)  # 'from behind the desk, …'
+    if not nested and not seen_from and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
         return predications, None
     everything = tuple(p for part in predications for p in part.predicates)
     return (), viewpoint_of(everything)

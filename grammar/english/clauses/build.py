@@ -542,6 +542,7 @@ class Builder(Transformer[Any, Built]):
             return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
+        idle = idle and noun.phrase.owner is None  # 'on display', but 'above your display'
         if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
@@ -610,12 +611,17 @@ class Builder(Transformer[Any, Built]):
         found: list[Predicate] = []
         several: NounPhrase | None = None
         for noun in nouns[::2]:
-            for member in _with_shared_place(noun.phrase):
+            turned = noun.extra[:1] and noun.extra[0].relation in ("facing", "pointing")
+            if turned and is_place(noun.phrase):  # 'with the inside facing up'
+                noun = Noun(replace(noun.phrase, predicates=noun.extra))
+            for i, member in enumerate(_with_shared_place(noun.phrase)):
                 if several is not None:
                     member = _beside(member, several)
                 several = replace(member, predicates=()) if member.plural else several
                 made = _accompanied(relator, member, union(chunk.span, noun.phrase.span))
                 joined = relator.preposition.phrase in _SHARING_PLACES and not member.predicates and relator.positive
+                if i and noun.phrase.joined_by == "or":  # 'cover the bowl with a cloth or a lid'
+                    made = [replace(p, adverbs=(*p.adverbs, _OR)) for p in made]
                 found += [replace(p, adverbs=(*p.adverbs, "too")) for p in made] if joined else made
             found += noun.extra
         return tuple(found)
@@ -647,7 +653,10 @@ class Builder(Transformer[Any, Built]):
 
     def relative(self, rel: Chunk, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that stands on the tray*."""
-        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in flat(verb))
+        told = tuple(flat(verb))
+        if verb.group.modal in _OBLIGING:  # 'the lid, which needs to be removed'
+            told = tuple(p for p in told if p.relation != "state")
+        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in told)
 
     def reduced(self, rel: Chunk, predications: tuple[Predication, ...]) -> tuple[Predicate, ...]:
         """Return the predicates of *that next to the tray*."""
@@ -718,8 +727,10 @@ def flat(verb: Verb) -> list[Predicate]:
     """
     found: list[Predicate] = []
     contrasted: list[Predicate] = []
+    after_but = False
     for part in verb.predications:
-        if part.contrast:
+        after_but = after_but or part.contrast  # also 'behind the jar' in 'not on it but under it, behind the jar'
+        if after_but and not part.choice:
             contrasted += part.predicates
         elif not part.choice:
             found += part.predicates
@@ -929,6 +940,8 @@ def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predi
 
 _NO_TARGETS = frozenset({"direction", "position", "area", "inside", "outside", "o'clock"})
 
+_OBLIGING = frozenset({"should", "must", "need", "have to", "ought", "shall"})
+"""Modal verbs of what must be done, and is not yet so."""
 _OR = "or"
 """Mark, among the adverbs of a place, of an alternative to the place before it."""
 

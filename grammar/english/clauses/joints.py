@@ -146,6 +146,8 @@ def _cuts(
         return _inversion_follows(types, end)  # 'and 10 cm behind it a bottle'
     if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(chunks, types, end):
         return True
+    if following == "PREP" and "AND" in kinds and _fronted_command(types, end):
+        return True  # 'lay a fork on the left, and to the right of it put a knife'
     if following == "PREP" and "AND" in kinds and _verbless_inversion(types, end):
         return True  # 'the brush, and behind it the cup'
     if labelled and kinds == {"COMMA"} and following in PREDICATES:
@@ -162,6 +164,13 @@ def _cuts(
 def _absolute_before(types: list[str], start: int, at: int) -> bool:
     """Return True for a thing with its place and no verb, as in a list of such: *A sits at X, B at Y, C at Z*."""
     return types[start] == "NP" and types[start + 1] in PREDICATES - {"WITH", "ADJP"} and at > start + 1
+
+
+def _fronted_command(types: list[str], at: int) -> bool:
+    """Return True for places and then a command: *in the corner next to it put …*."""
+    while types[at : at + 2] in (["PREP", "NP"], ["OF", "NP"]):
+        at += 2
+    return types[at : at + 2] == ["PUT", "NP"]
 
 
 def _verbless_inversion(types: list[str], at: int) -> bool:
@@ -222,6 +231,15 @@ def _subject_follows(
     )
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
+    told_apart = any(kind == "NP" and chunks[k].value.pronoun == "one" for k, kind in enumerate(types[start:at], start))
+    if (
+        told_apart
+        and chunks[end].value.pronoun == "other"
+        and types[end + 1 : end + 2] in (["PREP"], ["ADV"], ["PART"])
+    ):
+        return True  # 'one left of the cross, the other right of it'
+    if _has_beside_it(chunks, types, start, at, end):
+        return False
     if complete and kinds in ({"COMMA"}, {"AND"}) and types[end : end + 4] == ["NP", "AND", "NP", "PREP"]:
         opposite = _is_opposite(chunks, start, at, end + 3)
         if opposite or kinds == {"COMMA"}:
@@ -274,6 +292,16 @@ def _list_of_with(types: list[str], start: int, at: int) -> bool:
     """Return True for things with their places after *with*: 'with salt at its left and pepper at its right'."""
     withs = [i for i in range(start, at) if types[i] == "WITH"]
     return bool(withs) and not any(kind in FINITE for kind in types[withs[-1] : at])
+
+
+def _has_beside_it(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:
+    """Return True for things with places beside their owner: *it has a fork to its left and a knife to its right*."""
+    verbs = [i for i in range(start, at) if types[i] in FINITE]
+    has = bool(verbs) and types[verbs[-1]] == "TVERB" and chunks[verbs[-1]].value.lemma == "have"
+    placed = types[at - 2 : at] == types[end + 1 : end + 3] == ["PREP", "NP"]
+    phrases = (chunks[at - 1].value, chunks[end + 2].value) if has and placed else ()
+    owners = [phrase.owner or phrase for phrase in phrases]
+    return bool(owners) and all(owner.pronoun in ("it", "they") and not owner.head for owner in owners)
 
 
 def _verb_left_out(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:

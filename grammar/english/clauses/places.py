@@ -64,12 +64,23 @@ def is_place(phrase: NounPhrase) -> bool:
         phrase.head in PLACE_NOUNS
         or phrase.head == "o'clock"
         or (phrase.head in _STARTS and phrase.of is not None and phrase.of.head not in EVENTS)
-        or (_row(phrase) is not None and phrase.determiner in (None, "a", "an", "one"))
+        or (arrangement_of(phrase) is not None and phrase.determiner in (None, "a", "an", "one"))
     )
 
 
-def _row(phrase: NounPhrase) -> str | None:
-    """Return the relation of *a row*, and of *concentric circles*, where another word stands before a plural."""
+def arrangement_of(phrase: NounPhrase) -> str | None:
+    """Return the relation of *a row*, and of *concentric circles*, where another word stands before a plural.
+
+    Parameters
+    ----------
+    phrase
+        Noun phrase.
+
+    Returns
+    -------
+    str or None
+        ``row``, ``circle`` or ``stacked``; None for a phrase that names no arrangement.
+    """
     return _ROWS.get(phrase.head) or (_ROWS.get(last_word(phrase.head)) if phrase.plural else None)
 
 
@@ -115,7 +126,7 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     if not is_place(phrase) or relation not in _ON:
         return None
     head = phrase.head
-    row = None if head in PLACE_NOUNS else _row(phrase)
+    row = None if head in PLACE_NOUNS else arrangement_of(phrase)
     if row is not None and relation == "on" and phrase.of is None:
         return None  # 'kettle on back ring'
     if head in _STARTS:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import VerbGroup
 from deixis.grammar.english.clauses.built import Noun, Predication, misunderstood, union
+from deixis.grammar.english.clauses.places import arrangement_of
 from deixis.grammar.english.tree import (
     Adjective,
     Degree,
@@ -104,6 +105,12 @@ _LEAVING = word_set(
 _RANGING = frozenset({"line", "range", "queue", "row"})
 """Verbs by which things get into a row: *lined up on the shelf*."""
 
+_ARRANGING = {"stack": "stacked", "pile": "stacked", "nest": "nested", "line": "row", "align": "row"}
+"""Relation of several things together by the participle that states it alone: *the plates are stacked*."""
+
+_FORMING = frozenset({"form", "make", "build"})
+"""Verbs whose object can be an arrangement of the subject: *the cups form a circle*."""
+
 _FINISHING = word_set("bind bound upholster gild enamel lacquer varnish paint print dress cast carve engrave sign mark")
 """Verbs after which *in* names a material or a manner."""
 
@@ -169,6 +176,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
                 if kind == "unknown" or (lemma in _STATES and following.relation != "pointing"):
                     found.append(_state(lemma, predicate))
+            elif following is None and lemma in _ARRANGING:
+                found.append(Predicate(_ARRANGING[lemma], (), predicate.span, positive=predicate.positive))
             elif following is None and lemma in ("find", "see", "notice", "present"):
                 found.append(Predicate("there", (), predicate.span, positive=predicate.positive))
             elif (following is None or kind == "unknown") and (kind != "posture" or lemma in _STATES):
@@ -407,6 +416,9 @@ def transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, .
     between = tuple(p for p in phrase.predicates if p.relation == "between")
     if last_word(phrase.head) in GAPS and between:  # 'soft bags fill the gaps between the cases'
         return (*between, *things.extra)
+    arranged = arrangement_of(phrase) if group.lemma in _FORMING and phrase.determiner in ("a", "an") else None
+    if arranged is not None:
+        return (Predicate(arranged, (), span, adverbs=group.adverbs, positive=group.positive), *things.extra)
     if not relation:
         misunderstood(span, f"'{group.lemma}' with an object does not say where something is")
         return things.extra
@@ -574,6 +586,9 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     ):
         value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
         relation = "facing"
+    elif lemma in _ROTATING and relation == "far":
+        value = Adjective("away", "position", Degree.PLAIN, following.span)
+        relation, arguments = "facing", ()  # 'turn the label away from you'
     elif lemma in _ROTATING and relation in ("to", "facing", "pointing") and arguments:
         relation = "facing"  # 'its opening turned to the fire'
     elif relation == "through" and lemma in _PASSING:
@@ -627,7 +642,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif lemma in _TELLING and relation in ("inside", "on", "at"):
         relation = "through"  # 'mentioned in the catalogue'
     elif lemma in ("cover", "coat", "drape") and relation == "with":
-        return replace(following, relation="on", reversed=True, span=span)
+        denied = following.positive is not marker.positive
+        return replace(following, relation="on", reversed=True, span=span, positive=not denied)
     elif relation == "above" and lemma in _COVERING and arguments and arguments[0].head in _OUTER and arguments[0].of:
         relation, arguments = "on", (arguments[0].of,)  # 'draped over the back of the chair'
     elif relation == "above" and lemma == "hang" and arguments and _is_draped(arguments[0]) and arguments[0].of:
@@ -643,7 +659,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif relation == "by" and lemma not in _PASSIVES and lemma not in _STAYING:
         relation = "through"  # 'sorted by price', 'hidden by the lamp' name no place
     elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
-        return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
+        denied = following.positive is not marker.positive  # 'behind the door, not covered by a cloth'
+        return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span, positive=not denied)
     positive = following.positive if marker.positive else not following.positive
     left = next((place for word, place in AWAY_FROM.items() if word in following.adverbs), None)
     if relation == "from" and lemma in _KEEPING and left and last_word(arguments[0].head) not in NOT_PLACES:

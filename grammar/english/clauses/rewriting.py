@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses import asides
 from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
 from deixis.grammar.english.clauses.ellipses import filled_in
@@ -94,8 +95,9 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     for rewrite in (
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
-        _without_openings, _with_participles_of_posture, _with_purposes_of_places, _without(_means),
-        _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
+        _without_openings, _with_participles_of_posture, _with_purposes_of_places,
+        *(_without(find) for find in asides.FINDERS),
+        _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
         _without(_restriction_of_object),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
@@ -105,7 +107,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
         _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
         _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
-        _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
+        _with_shared_objects, _with_aims_of_subjects, _with_places_of_pairs, _with_places_of_nearest,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -138,6 +140,10 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             named = Chunk("NP", of.start, of.end, noun, of.span)
             after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
             i = (closing or i) + 1
+            continue
+        if said and [c.type for c in inside[:2]] == ["NP", "REL"] and "COMMA" not in [c.type for c in inside]:
+            _leave_out(inside, "this says what the thing before is, not where it is")
+            i = (closing or i) + 1  # 'the rooks (the pieces that look like towers) go …'
             continue
         if said and {c.type for c in inside} <= _NAMES and sum(c.type == "NP" for c in inside) == 1:
             i = (closing or i) + 1  # 'the long panels (A) go …', 'under a tea towel (mice!)'
@@ -1199,6 +1205,32 @@ def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
         if aims and part == "bowl" and tool and whose.owner is not None:
             whose = replace(whose, head="tip")
         found[i] = replace(chunk, value=whose)
+    return found
+
+
+def _with_shared_objects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the stand holds a cup below or behind the jug* with the jug after both prepositions.
+
+    After *have*, the second place would be that of the subject: *one side has a lamp above or below the box*.
+    """
+    found: list[Chunk] = []
+    end = 0
+    for i, chunk in enumerate(chunks):
+        if i < end:
+            continue
+        types = [type_at(chunks, i + k) for k in range(-2, 4)]
+        shares = types[:3] == ["TVERB", "NP", "ADV"] and types[3] in ("AND", "OR") and types[4:] == ["PREP", "NP"]
+        heights = ("above", "below", "behind", "in_front", "under")
+        if shares and chunk.value.preposition.relation in heights and chunks[i - 2].value.lemma == "have":
+            end = i + 4
+            if types[3] == "AND":
+                found += [replace(chunk, type="PREP"), replace(chunks[i + 3], start=chunk.end)]
+            _leave_out(chunks[i + (types[3] == "AND") : end], "this does not say which of the two is where")
+        elif shares and chunk.value.preposition.relation in heights:
+            shared = replace(chunks[i + 3], start=chunk.end, end=chunk.end)
+            found += [replace(chunk, type="PREP"), shared]
+        else:
+            found.append(chunk)
     return found
 
 

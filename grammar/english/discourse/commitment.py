@@ -6,7 +6,7 @@ import re
 
 from deixis.grammar.english.tokens import DOUBT
 from deixis.grammar.english.tree import Mood, Sentence
-from deixis.grammar.english.vocabulary.function_words import READY
+from deixis.grammar.english.vocabulary.function_words import NUMBERS, OTHER_UNITS, READY, UNITS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.verbs import SAYING
 
@@ -84,7 +84,7 @@ _PUTTING = (
 UNREAL = re.compile(
     r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
     r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather|sooner)\b"
-    r"|(?<!['\u2019])\b(?!you\b)(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|plans?|planned|tried|tries|intends?|intended|"
+    r"|(?<!['\u2019])\b(?!you\b)(?<!\bif\s)(?<!\bif\sit\s)(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|plans?|planned|tried|tries|intends?|intended|"
     r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
     r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
     r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
@@ -106,6 +106,7 @@ UNREAL = re.compile(
     r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b"
     r"|(?<=[a-z]\s)(?:asks?|asked|tells?|told|orders|ordered|begs|begged|urge[sd]?|advise[sd]?|persuade[sd]?|expect(?:s|ed)|commanded)\s+"
     r"(?:[\w'\u2019]+\s+){1,3}?(?:not\s+)?to\s+(?!the\b)[a-z]+"
+    r"|\b(?:suggest(?:s|ed)|propos(?:es|ed)|recommend(?:s|ed))\s+(?:that\s+)?(?:we|i|he|she|they)\b"
     r"|\b(?:refus(?:es?|ed)|declin(?:es?|ed)|forgot|forgets|neglect(?:s|ed)?|omit(?:s|ted)|"
     r"hesitat(?:es|ed))\s+to\b|\b(?:look|search|hunt|ask|wish)(?:s|es|ed|ing)?\s+for\s+(?:an?|some|any)\b"
     r"|^\s*in\s+(?:the|an?|this|that|his|her|my|our|your|their|one|[\w-]+['\u2019]s?)\s+(?:[\w'\u2019-]+\s+){0,2}?(?:story|novel|tale|fable|"
@@ -168,6 +169,12 @@ SELDOM = re.compile(
     re.IGNORECASE,
 )
 """Words by which something is so at times, or of some things."""
+AT_MOST = re.compile(
+    r"\b(?:at\s+most|(?:no|not)\s+more\s+than|fewer\s+than|less\s+than|up\s+to|a\s+maximum\s+of)\s+"
+    rf"(?:{'|'.join(NUMBERS)}|\d+)\s+(?!(?:{'|'.join(UNITS)}|{'|'.join(OTHER_UNITS)})s?\b)(?=[a-z])",
+    re.IGNORECASE,
+)
+"""Upper bound of the number of things, which does not say that there are any: *at most two cups*."""
 UNSURE = re.compile(
     r"(?:\bnot|n['\u2019]t|\bhardly|\bnever|\bfar\s+from)\s+(?:really\s+|quite\s+|so\s+|at\s+all\s+|even\s+)?"
     r"(?:sure|certain|convinced|clear)\b|\b(?:unsure|uncertain|unclear|doubtful|unlikely)\s+(?:if|that|whether|the|an?)\b",

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import (
+    AT_MOST,
     CONSEQUENCE,
     ELSEWHERE,
     EVENT,
@@ -37,7 +38,7 @@ from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tokens import DOUBT
-from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
+from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.nouns import (
     ABSTRACT,
@@ -45,6 +46,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     GENERAL,
     HOLDERS,
     PARTS,
+    PEOPLE,
     REMOVABLE,
     SURFACES,
     VIEWER_WORDS,
@@ -68,6 +70,8 @@ LABEL = re.compile(
 """Words after a label of what follows: *towel first: fold it*."""
 ITEM_LABEL = re.compile(r"([A-Z][\w'\u2019-]*(?:\s+[\w'\u2019-]+){0,2})\s*:\s+\w")
 """Label of an item and what is said about it: *Soup spoon: a large and round spoon.*"""
+AGAIN = re.compile(r"\b(?:and|then|,)\s+(?:then\s+)?\w+\s+(?:it|them)\b", re.IGNORECASE)
+"""Second command about the object of the first: *take a cup and put it on the tray*."""
 ABOUT_IT = re.compile(r"\s*(?:it|they)\s", re.IGNORECASE)
 MEASURES = frozenset({"size", "height", "length", "width", "thickness"})
 """Properties that a part and its whole need not share."""
@@ -87,6 +91,16 @@ _INSTEAD = re.compile(r"\b(?:instead\s+of|rather\s+than)\b", re.IGNORECASE)
 
 _NO_PERSON = re.compile(r"no(?:body|[ -]one)", re.IGNORECASE)
 """Subjects by which a person, and no thing, is not somewhere."""
+
+EACH_APART = re.compile(
+    r"\b(?:are|were)\s+each\b(?!\s+(?:of|other)\b)|\w+\s+each\s+(?:have|are|lie|stand|sit|rest|hang)\b"
+    r"|(?<!\bone)\s+each\s*(?=[,.;!]|\band\b|$)",
+    re.IGNORECASE,
+)
+"""Words by which each thing of a subject has its own: *they are each behind a plate*, *they stand on a saucer each*."""
+
+_FORBIDDEN = frozenset({"near", "next_to", "touching", "between", "against", "leaning", "opposite", "across", "facing"})
+"""Relations that *no* denies, besides the directions: *no book touches the lamp*."""
 
 ABSENT = frozenset(["missing", "miss", "absent", "gone"])
 
@@ -113,6 +127,7 @@ class Discourse(Statements):
             self.references.start, self.end = sentence.span
             self.references.lost = [problem.span for problem in sentence.misunderstood]
             self.condition = condition_of(sentence)
+            self.elsewhere = self._other_viewpoint(sentence)
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
             if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
                 self._ask_about(sentence.fragment)
@@ -125,6 +140,17 @@ class Discourse(Statements):
                     self._clause(part, number)
             self._focus_on_label(number)
         return self.drafts
+
+    def _other_viewpoint(self, sentence: Sentence) -> str | None:
+        """Return the words by which a sentence speaks from another place than the viewer's: *seen from the door*."""
+        at = None if sentence.viewpoint is None else sentence.viewpoint.at
+        if sentence.viewpoint is None or at is None or not at.head:
+            return None
+        owner = at.owner or at.of
+        here = owner is not None and owner.pronoun in VIEWER_WORDS and not owner.head
+        if here or last_word(at.head) in PEOPLE | {"viewer"}:
+            return None  # 'from my side of the table'
+        return " ".join(self.text[slice(*sentence.viewpoint.span)].strip(" ,").split())
 
     def _focus_on_label(self, number: int) -> None:
         """Let *it* in the next sentence mean the label of this one, as in *Spoon: a large one*."""
@@ -166,6 +192,8 @@ class Discourse(Statements):
             return
         clauses = self.sentences[sentence].clauses
         taken = phrase.determiner == "the" and bool(phrase.head or phrase.pronoun == "one") and not phrase.members
+        again = AGAIN.search(self.text[phrase.span[1] : self.end]) is not None
+        taken = taken or (again and bool(phrase.head) and not phrase.members and phrase.determiner != "no")
         if taken and not phrase.predicates and clauses and phrase.span[0] < clauses[-1].span[0]:
             handled = self._introduce(phrase)  # 'take the red one and put it behind the slit'
             if handled is not None:
@@ -231,7 +259,7 @@ class Discourse(Statements):
         """Return True if *and* stands between two things of a note."""
         return self.text[part.span[1] : following.span[0]].strip(" ,") in ("and", "&")
 
-    def _ask_about(self, phrase: NounPhrase | None) -> None:
+    def _ask_about(self, phrase: NounPhrase | None, predicates: tuple[Predicate, ...] = ()) -> None:
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
         if phrase is None or not phrase.head or phrase.determiner in ("a", "an", "no", "any"):
             return
@@ -240,7 +268,9 @@ class Discourse(Statements):
             return  # 'bread? in a basket'
         asked = self.references.find(replace(phrase, predicates=()))
         if asked is not None and asked.role is Role.THING:
-            self.references.recent.insert(0, Focus(asked, [], None, self.references.sentence))
+            named = [a for p in predicates for a in p.arguments if a.head and a.determiner == "the"]
+            others = [e for a in named if (e := self.references.find(replace(a, predicates=()))) is not None]
+            self.references.recent.insert(0, Focus(asked, others, None, self.references.sentence))
             self.asked = (self.references.sentence, asked)
 
     def _one_each(self, group: Entity, phrase: NounPhrase) -> None:
@@ -253,7 +283,7 @@ class Discourse(Statements):
 
     def _clause(self, clause: Clause, sentence: int) -> None:
         if clause.mood is Mood.QUESTION:
-            self._ask_about(clause.subject)
+            self._ask_about(clause.subject, clause.predicates)
             return
         modal = clause.modal
         denied = tuple(p for p in clause.predicates if not p.positive)
@@ -344,9 +374,13 @@ class Discourse(Statements):
         unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
         if clause.mood is Mood.COMMAND:
             unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
+        bounds = AT_MOST.finditer(self.text, self.references.start, clause.span[1])
+        unreal = unreal or next((match for match in bounds if match.end() > clause.span[0]), None)
         if (unreal and positive) or SELDOM.search(self.text[slice(*clause.span)]):
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         if not clause.predicates and not clause.choices and not clause.existential:
+            if clause.condition is not None and clause.mood is Mood.STATEMENT:
+                subject = _without_verb(subject)  # 'when the kettle boils'
             handled = self._introduce(subject)  # 'fold the napkin'
             if handled is not None:
                 self.references.recent.insert(0, Focus(handled, [], None, sentence))
@@ -355,6 +389,8 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
+        if clause.existential and not clause.predicates and subject.members:
+            subject = _with_shared_surface(subject)
         text = self.text[self.references.start : self.end]
         limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(text) or EVENT.match(text)
         if limit is not None and self.how.condition is None:
@@ -395,12 +431,18 @@ class Discourse(Statements):
             and self._of_last(predicates, subject)
         ):
             return
-        if last_word(subject.head) in GENERAL and any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives):
+        best = any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives)
+        if last_word(subject.head) in GENERAL and best and not subject.plural:
             self._superlative_apposition(subject, predicates)
             return
+        if subject.owner is not None and subject.owner.pronoun == "it" and _is_put_beside(subject, predicates):
+            subject = replace(subject, owner=None, determiner="the")  # 'its lid lies next to it'
         entity = self._subject(subject, predicates)
         if entity is None:
             return
+        apart = EACH_APART.search(self.text[slice(*clause.span)])
+        if entity.size > 1 and apart is not None:
+            self.how = replace(self.how, quantifier="each")
         if self.obliged is not None and self.how.past and LEFT.search(self.text[self.obliged[3] : clause.span[1]]):
             self.how = replace(self.how, past=False)  # 'it should be here, but I left it there'
         if modal is None and not self.how.past and clause.mood is Mood.STATEMENT:
@@ -527,7 +569,7 @@ class Discourse(Statements):
         specific = bool(subject.head) and last_word(subject.head) not in GENERAL and subject.pronoun is None
         surface = self.references.surface_noun
         specific = specific and not any(last_word(a.head) == surface for p in predicates for a in p.arguments)
-        if specific and all(p.arguments and p.relation in DIRECTIONS | {"near", "next_to"} for p in predicates):
+        if specific and all(p.arguments and p.relation in DIRECTIONS | _FORBIDDEN for p in predicates):
             thing = self.references.find(replace(subject, determiner="the", predicates=()))
             if thing is not None:  # 'no flowers may stand in front of the cross', which may or may not be there
                 self.how = replace(self.how, positive=False)
@@ -623,7 +665,40 @@ def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:
     if subject is None:
         return frozenset()
     vague = subject.pronoun in ("these", "those") and not (subject.head or subject.of or subject.adjectives)
+    twice = subject.pronoun == "it" and any(a.pronoun == "it" for p in clause.predicates[:1] for a in p.arguments)
+    if twice and clause.mood is Mood.COMMAND:
+        return frozenset({Guess.ELLIPSIS})  # 'wrap it around it'
     return frozenset({Guess.THOSE} if vague else {Guess.BARE} if _can_be_verb(subject) else ())
+
+
+def _with_shared_surface(phrase: NounPhrase) -> NounPhrase:
+    """Return *two bowls, a spoon and a jar on the mat*, which are there, with the mat as the place of each."""
+    *others, last = phrase.members
+    shared = phrase.joined_by == "and" and not any(member.predicates or member.negated for member in others)
+    named = {last_word(member.head) for member in phrase.members}
+    carried = last.predicates and all(
+        p.relation in ("on", "inside") and not p.reversed
+        and all(a.determiner == "the" and last_word(a.head) not in named for a in p.arguments)
+        for p in last.predicates
+    )  # fmt: skip
+    if not (shared and carried):
+        return phrase
+    return replace(phrase, members=tuple(replace(member, predicates=last.predicates) for member in phrase.members))
+
+
+def _is_put_beside(part: NounPhrase, predicates: tuple[Predicate, ...]) -> bool:
+    """Return True for a part that can be taken off, and that lies beside its whole."""
+    beside = DIRECTIONS | {"next_to", "near", "under"}
+    return part.head in REMOVABLE and any(
+        p.relation in beside and any(a.pronoun == "it" and not a.head for a in p.arguments) for p in predicates
+    )
+
+
+def _without_verb(phrase: NounPhrase) -> NounPhrase:
+    """Return *the kettle boils*, all of a condition, as the kettle: the last word is its verb."""
+    noun = phrase.head.rpartition(" ")[0]
+    agrees = bool(noun) and phrase.plural and phrase.count is None and phrase.determiner in ("the", "a", "an")
+    return replace(phrase, head=noun, plural=False) if agrees and not phrase.members else phrase
 
 
 def _can_be_verb(phrase: NounPhrase) -> bool:

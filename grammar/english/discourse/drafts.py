@@ -75,6 +75,11 @@ TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct|open)\w*\s+(?:\w+
 """Directions that are denied: *pointing away from the plate*."""
 
 
+SEEN_FROM_A_SIDE = frozenset(
+    {"left", "right", "top", "bottom", "top_left", "top_right", "bottom_left", "bottom_right", "in_front", "behind"}
+)
+"""Relations that depend on where the viewer is."""
+
 MIN_WORDS_OF_LISTS = 3
 """Minimum number of words at which a name with a plural inside may be a list without commas."""
 
@@ -104,6 +109,7 @@ class Drafting:
         self.edge: str | None = None
         self.end = 0  # of the sentence in the text
         self.condition: str | None = None
+        self.elsewhere: str | None = None  # words of the sentence by which another place than the viewer's is meant
         self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
         tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]
         past = sum(tenses)
@@ -139,6 +145,9 @@ class Drafting:
                 how = replace(how, positive=not how.positive)
             if self.part == "handle" and all(last_word(s.noun) in HEADED for s in subjects):
                 how = replace(how, by_handle=True)
+        sides = relation in SEEN_FROM_A_SIDE or (value is not None and not SEEN_FROM_A_SIDE.isdisjoint(value.split()))
+        if self.elsewhere is not None and sides and how.condition is None:
+            how = replace(how, condition=self.elsewhere)
         start, end = self.how.span
         if any(start <= use.span[0] and use.span[1] <= end for use in self.references.doubtful[-3:]):
             how = replace(how, guesses=how.guesses | {Guess.PRONOUN})

@@ -24,6 +24,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     VIEWER_WORDS,
     last_word,
 )
+from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.ontology.graph.claims import PLACES
 
 VERB_AFTER = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
@@ -78,6 +79,10 @@ COMPARTMENTS = frozenset(
 """Nouns of places in a thing, which stand for the thing: *in slot 3 of the rack*."""
 
 
+ARRANGEMENTS = {"row": "row", "line": "row", "circle": "circle", "ring": "circle"}
+"""Claim about the things of a phrase by its head: *a row of pawns*."""
+
+
 class Mentions(Drafting, ABC):
     """Reader of noun phrases."""
 
@@ -129,6 +134,10 @@ class Mentions(Drafting, ABC):
                 found += [] if introduced is None else [introduced]
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
         phrase = _with_restrictions_of_contents(phrase)
+        of = phrase.of
+        arranged = phrase.head in ARRANGEMENTS and phrase.count is None and not (phrase.plural or phrase.adjectives)
+        if arranged and of is not None and of.head and of.plural and self.references.earlier(phrase) is None:
+            return self._arrange(phrase, replace(of, predicates=()), relation, besides)
         key = (phrase.span, phrase.head, phrase.count)
         if phrase.head and key in self.introduced:
             return self.introduced[key]
@@ -153,7 +162,13 @@ class Mentions(Drafting, ABC):
         carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
         if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
             self._say(besides, phrase.predicates, phrase, focus=False)
-        outside = tuple(p for p in phrase.predicates if not new and besides is not None and self._bears(entity, p))
+        outside = tuple(
+            p for p in phrase.predicates
+            if besides is not None and (
+                (not new and self._bears(entity, p)) or _shares_support(phrase, relation, p)
+                or (p.relation == "opposite" and relation in ("in_front", "behind") and len(p.arguments) == 1)
+            )  # 'put it in front of the chair on the opposite side of the lamp'
+        )  # fmt: skip
         if outside and besides is not None:  # 'on the desk to the left of the lamp' of a lamp that is on the desk
             self._say(besides, outside, phrase, focus=False)
             phrase = replace(phrase, predicates=tuple(p for p in phrase.predicates if p not in outside))
@@ -180,6 +195,21 @@ class Mentions(Drafting, ABC):
             if restriction.subject is entity and restriction.others:
                 self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}
         return entity
+
+    def _arrange(
+        self, phrase: NounPhrase, of: NounPhrase, relation: str | None, besides: Entity | None
+    ) -> Entity | None:
+        """Return the things of *a row of pawns*, and state that they are in a row."""
+        things = self._introduce(of, relation, besides)
+        if things is None or things.role is not Role.THING:
+            return things
+        things.aliases.add(phrase.head)
+        self.references.renamed.append(things)  # later 'the row'
+        plain = replace(self.how, positive=True, weight=1.0, optional=False, quantifier=None, span=phrase.span)
+        self._add(ARRANGEMENTS[phrase.head], (things,), (), how=plain)
+        if phrase.predicates:
+            self._say(things, phrase.predicates, phrase, focus=False)
+        return things
 
     def _bears(self, entity: Entity, predicate: Predicate) -> bool:
         """Return True for a place beside a thing that is on or inside an entity, which the entity cannot have."""
@@ -215,7 +245,11 @@ class Mentions(Drafting, ABC):
                     )
         for adjective in phrase.adjectives:
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
-            if new and adjective.degree is Degree.SUPERLATIVE and name is not None and not entity.members:
+            if adjective.word in ("left", "right"):
+                name = f"{adjective.word}most"
+            placed = adjective.word in ("high", "low")  # 'the highest drawer' is not the tallest
+            best = adjective.degree is Degree.SUPERLATIVE and name is not None and not placed
+            if new and best and name is not None and not entity.members:
                 self._add(name, (entity,), (), how=replace(plain, span=phrase.span))
         if new and entity.members:
             self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))
@@ -262,6 +296,11 @@ class Mentions(Drafting, ABC):
             self.references.named = others
         if any(p.relation == "one_each" for p in predicates):
             self.how = replace(self.how, quantifier="each")
+            sides = [p for p in predicates if p.relation != "one_each"]
+            if 1 < len(sides) == entity.size and not any(p.arguments for p in sides):
+                for leaf, side in zip(entity.leaves(), sides, strict=True):  # 'to the left and right respectively'
+                    self._say(leaf, (side,), phrase, focus=False)
+                predicates = ()
         outer = self.how
         places = {p.part for p in predicates if p.relation in ("part", "edge") and not p.arguments and p.part}
         if any(p.relation == "row" for p in predicates):  # 'from left to right across the stage are …'
@@ -322,6 +361,33 @@ class Mentions(Drafting, ABC):
         return found
 
 
+def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predicate) -> bool:
+    """Return True for *next to the screen* after *on the desk*, which is said of what is on the desk.
+
+    What stands on the floor, or is a part of the room, is beside the desk itself: *on the desk next to the door*.
+    """
+    named = phrase.determiner == "the" or phrase.owner is not None
+    if relation != "on" or not named or phrase.plural or last_word(phrase.head) not in _SUPPORTS_OF_SEVERAL:
+        return False
+    if predicate.relation not in _NEXT_TO or len(predicate.arguments) != 1 or predicate.reversed:
+        return False
+    other = predicate.arguments[0]
+    noun = last_word(other.head)
+    return bool(noun) and not other.members and noun not in SURROUNDINGS | SURFACES | _FURNITURE
+
+
+_NEXT_TO = frozenset({"next_to", "near", "in_front", "behind", "left", "right"})
+_SUPPORTS_OF_SEVERAL = word_set(
+    "desk table tabletop counter countertop worktop bench workbench board shelf sideboard dresser stage"
+)
+"""Nouns of what carries many things, most of which are smaller than it is."""
+_FURNITURE = word_set(
+    "chair armchair sofa couch bed stool bookcase wardrobe cupboard fireplace chimney heater radiator stairs staircase"
+    " doorway entryway hallway hall gate balcony patio porch terrace fence piano machine washer dryer dishwasher cooker"
+    " bath bathtub shower toilet basin person seat audience driver player closet pantry curtain elevator lift column"
+    " pillar locker rack shed garage pool pond bush hedge path road car truck van board lectern pulpit crib cot"
+)
+"""Nouns of what stands on the floor or the ground, beside a table and not on it."""
 _BESIDE = DIRECTIONS | {"near", "next_to", "between", "under", "opposite"}
 """Relations that, after a wall or a floor, are those of the thing that is on it: *on the wall near the exit*."""
 

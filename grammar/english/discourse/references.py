@@ -239,6 +239,10 @@ class References:
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
             return self.find(inner, relation, besides)
         earlier = self._carrier(phrase, relation, besides) or self._earlier(phrase)
+        own = earlier is not None and besides is not None and earlier in [leaf.itself for leaf in besides.leaves()]
+        if own and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
+            others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
+            earlier = next((e for e in others if not _conflicting(e, phrase)), None)  # 'the sleeping bag is in the bag'
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
             other = bool(phrase.adjectives) and besides.noun != noun  # 'the oat milk behind the whole milk'
@@ -251,8 +255,9 @@ class References:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
         several = several and not any(a.dimension == "colour" for a in phrase.adjectives)
-        if several and last in GENERAL - {"piece"} and noun == last:
-            return None  # 'the following items'
+        described = any(a.dimension != "other" for a in phrase.adjectives)
+        if several and last in GENERAL - {"piece"} and noun == last and not described:
+            return None  # 'the following items', but 'the heavy items'
         if phrase.owner is not None:
             self.find(phrase.owner, relation, besides)
         return self._new(phrase, Role.SURROUNDING if noun in SURROUNDINGS else Role.THING)
@@ -394,6 +399,10 @@ class References:
             kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
             if kind and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'towels' after 'a towel'
+            one = not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
+            apart = any(a.degree is Degree.PLAIN and a.rank is None for a in phrase.adjectives)
+            if one and apart and not entity.members and not _agreement(entity, phrase):
+                continue  # 'the shallow drawer' after 'the bottom drawers'
             coloured = {("colour", a.word) for a in phrase.adjectives if a.dimension == "colour"}
             if coloured and entity.members and phrase.plural and not any(
                 coloured & leaf.adjectives for leaf in entity.leaves()
@@ -403,6 +412,10 @@ class References:
                 continue
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
+            bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
+            longer = entity.noun != phrase.head and not entity.was_called(phrase.head)
+            if bare and longer and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'folded napkins' after 'the paper napkins'
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (
@@ -502,31 +515,33 @@ class References:
         """
         leaves = list(group.leaves())
         if phrase.determiner == "other" or phrase.pronoun == "other":
-            taken = [leaf for leaf in leaves if leaf.is_picked]
-            return next((leaf for leaf in leaves if leaf not in taken), leaves[-1])
+            left = [leaf for leaf in leaves if not leaf.is_picked]
+            if phrase.plural and len(left) > 1 and len(left) >= (phrase.count or 0):  # 'the other two', 'the others'
+                return Entity("", members=[self.picked(leaf, phrase) for leaf in left[: phrase.count]])
+            return left[0] if left else leaves[-1]
         for predicate in phrase.predicates:  # 'the second fork from the left', with the leaves from left to right
             rank = predicate.value.rank if predicate.relation == "ordinal" and predicate.value is not None else None
             if rank is not None and 0 < abs(rank) <= len(leaves):
                 from_left = (rank > 0) == (predicate.part not in ("right", "back", "far"))
-                return self._picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
+                return self.picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
         owner = phrase.owner.head if phrase.owner is not None else ""
         if owner and not phrase.plural and phrase.head:  # 'the passenger's seat' after 'the seats'
             owned = next((leaf for leaf in leaves if ("picked", f"of {owner}") in leaf.adjectives), None)
             owned = owned or next((leaf for leaf in leaves if not leaf.is_picked), None)
             if owned is not None:
                 owned.adjectives.add(("picked", f"of {owner}"))
-                return self._picked(owned, phrase)
+                return self.picked(owned, phrase)
         apart = any(p.degree is Degree.SUPERLATIVE and p.arguments for p in phrase.predicates)
         free = [leaf for leaf in leaves if not leaf.is_picked]
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
-            return self._picked(free[0], phrase)  # 'the post nearest the door'
+            return self.picked(free[0], phrase)  # 'the post nearest the door'
         for adjective in phrase.adjectives:
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
-                return self._picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
+                return self.picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
             tag = _tag(adjective)
             for leaf in leaves:
                 if (adjective.dimension, adjective.word) in leaf.adjectives or ("picked", tag) in leaf.adjectives:
-                    return self._picked(leaf, phrase)
+                    return self.picked(leaf, phrase)
             free = [leaf for leaf in leaves if not leaf.is_picked]
             if not free or adjective.dimension == "state":
                 continue
@@ -535,7 +550,7 @@ class References:
             if adjective.degree is Degree.PLAIN and adjective.dimension != "position":
                 leaf.adjectives.add((adjective.dimension, adjective.word))
             self._compare(adjective, leaf, leaves, phrase)
-            return self._picked(leaf, phrase)
+            return self.picked(leaf, phrase)
         return None
 
     def _compare(self, adjective: Adjective, leaf: Entity, leaves: list[Entity], phrase: NounPhrase) -> None:
@@ -553,7 +568,21 @@ class References:
                 if other is not leaf:
                     self.compare(relation, leaf, other, phrase)
 
-    def _picked(self, leaf: Entity, phrase: NounPhrase) -> Entity:
+    def picked(self, leaf: Entity, phrase: NounPhrase) -> Entity:
+        """Return a member of a group, marked as told apart from the others by a phrase.
+
+        Parameters
+        ----------
+        leaf
+            Member of a group.
+        phrase
+            Noun phrase that stands for it.
+
+        Returns
+        -------
+        Entity
+            The member.
+        """
         if not leaf.is_picked:
             leaf.adjectives.add(("picked", "named"))
         leaf.mention(self.words(phrase))
@@ -597,10 +626,15 @@ class References:
         word = phrase.pronoun or ""
         if word in VIEWER_WORDS:
             return self.viewer
+        if word == "both" and phrase.of is not None and phrase.of.pronoun == "they" and not phrase.of.head:
+            phrase = replace(phrase, of=None)
         if phrase.of is not None and word not in ("it", "they"):
             group = self.find(phrase.of, relation, besides)
             if group is None or word in ("all", "both", "each", "everything"):
                 return group
+            if word == "one" and group.members and not phrase.plural:  # 'one of the cups', which another one is not
+                free = (leaf for leaf in group.leaves() if not leaf.is_picked)
+                return self.picked(self.member(group, phrase) or next(free, None) or next(group.leaves()), phrase)
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("it", "they") and self._is_lost(phrase):
             return None
@@ -630,16 +664,17 @@ class References:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None
         if word in ("former", "latter"):
-            pair = next(
-                (f for f in self.recent if f.subject is not None and f.others and f.sentence < self.sentence), None
-            )
-            pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
-            last = self.recent[0].subject if self.recent else None
             here = [entity for entity in self.named if entity is not besides]
             if len(here) > 1:  # 'between the mug and the bowl, but closer to the latter'
                 return here[-2 if word == "former" else -1]
-            if last is not None and not last.noun and len(last.members) > 1:
-                return last.members[0 if word == "former" else -1]
+            told = [f for f in self.recent if f.subject is not None]
+            pair = next((f for f in told if f.others), None)
+            for focus in told:
+                if focus.subject is not None and not focus.subject.noun and len(focus.subject.members) > 1:
+                    return focus.subject.members[0 if word == "former" else -1]
+                if focus.others and focus.sentence < self.sentence:
+                    pair = focus
+                    break
             return None if pair is None else pair.subject if word == "former" else pair.others[0]
         if word in ("one", "other"):
             return self._ellipsis(phrase, besides, relation)
@@ -690,6 +725,9 @@ class References:
             contrasted = self._contrasted(phrase)
             if contrasted is not None:
                 return contrasted
+        bare = phrase.determiner is None and phrase.pronoun is None and phrase.count is None and not phrase.plural
+        if group is None and bare and coloured and relation is not None:
+            return None  # 'on black's right'
         if group is None and phrase.adjectives:
             colours = {a.word for a in phrase.adjectives if a.dimension == "colour"}
             if colours and (noun := self._last_noun()):  # the blue one, beside the red box
@@ -742,7 +780,7 @@ class References:
         listed = before is not None and (labelled or before.subject in leaves)
         if further and group is not None and listed and free and not ranks:
             # 'two cups: a red one on the box, a blue one behind the jar'
-            return self._picked(self.member(group, phrase) or free[0], phrase)
+            return self.picked(self.member(group, phrase) or free[0], phrase)
         if further and group is not None and group.noun and phrase.of is None:
             return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
         if (further or (second and group is None)) and phrase.of is None and (last := self._last_thing(besides)):
@@ -756,11 +794,19 @@ class References:
             if kinds and many is not None and many.plural and many.noun and many.role is Role.THING:
                 return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
             return self._another_one(phrase, besides, relation)
+        if ranks and min(ranks) > group.size and group.noun and phrase.of is None:
+            return self._new(
+                replace(phrase, head=group.noun, pronoun=None), group.role
+            )  # 'the third' after two of them
+        some = phrase.of is not None or (phrase.determiner is None and relation is None)
+        if some and 1 < (phrase.count or 0) <= group.size and not phrase.adjectives:
+            chosen = [*free, *(leaf for leaf in leaves if leaf not in free)][: phrase.count]
+            return Entity("", members=[self.picked(leaf, phrase) for leaf in chosen])  # 'three of the five forks'
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
-            found = self._picked(free[0], phrase) if free else None
+            found = self.picked(free[0], phrase) if free else None
         if found is not None:
-            self._picked(found, phrase)
+            self.picked(found, phrase)
         return found
 
     def _last_thing(self, besides: Entity | None) -> Entity | None:

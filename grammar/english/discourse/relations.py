@@ -113,11 +113,24 @@ class Relations(Mentions):
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
             return  # 'fold it into a rectangle'
+        degree = self.text[: predicate.span[0]].casefold().split()[-1:]
+        if relation in ("near", "far") and degree in (["equally"], ["as"]):
+            return  # 'equally far from the cross' compares, and says no distance
+        if relation == "outside":
+            hollow = all(last_word(a.head) in VESSELS | HOLDERS for a in predicate.arguments)
+            if predicate.arguments and hollow and self.how.positive and not predicate.reversed:
+                self.how = replace(self.how, positive=False)  # 'outside the box' denies that it is inside
+                self._relate(subject, replace(predicate, relation="inside"), others)
+            return
         if relation in ("at", "on") and self._at_the_other(subject, predicate):
             return
         found: list[Entity | Region] = []
         restricted, end = self.restricted.get(subject, (None, 0))
         options = [a for a in predicate.arguments if a.joined_by == "or"]
+        if options and relation != "between" and not self.how.positive:
+            for member in options[0].members:  # 'not next to the jar or the box' denies both
+                self._relate(subject, replace(predicate, arguments=(member,)), others)
+            return
         if options and relation != "between" and not self.how.alternative:
             self.alternatives += 1
             outer = self.how
@@ -136,6 +149,9 @@ class Relations(Mentions):
             first, second = subject.leaves()
             self._pair(first, relation, second, False)
             self._pair(second, relation, first, False)
+            return
+        if predicate.reversed and [a.pronoun for a in predicate.arguments] == ["nothing"]:
+            self._add(f"none_{relation}", (subject,), ())  # 'the plate has nothing on it'
             return
         for phrase in predicate.arguments:
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.confidence import Guess
+from deixis.grammar.english.confidence import UNJOINED, Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
 from deixis.grammar.english.discourse.mentions import SUPERLATIVES
 from deixis.grammar.english.discourse.references import POLES, Focus
@@ -51,11 +51,28 @@ FLEXIBLE = frozenset({"cable", "cord", "hose", "string", "strap", "lead", "wire"
 """Parts that reach to other places than their wholes."""
 
 NOT_STATES = word_set(
-    "need turn roll lay put place set leave open water know call referred name mean work pick choose use allow"
-    " require include exclude recommended dedicated devoted recommend suggest advise ask forget remember consider"
-    " regard offer give hand drink eat keep say"
+    "need turn roll lay put place set leave open water know call referred name mean work pick choose use allow require"
+    " include exclude recommended dedicated devoted recommend suggest advise ask forget remember consider regard offer"
+    " give hand drink eat keep say design intend utilize"
 )
 """Verbs whose participles tell no state of a thing."""
+
+_DETACHED = frozenset({"lid", "cap"})
+"""Parts that are taken off their thing, and then have a place of their own."""
+_APART = frozenset(
+    {"on", "inside", "under", "next_to", "near", "behind", "in_front", "left", "right", "above", "below"}
+)
+"""Relations to another thing that a part can have while its own thing is elsewhere."""
+
+
+def _is_all_else(predicate: Predicate) -> bool:
+    """Return True for a comparison with everything else or all the others, which is a superlative."""
+    rest = predicate.arguments if len(predicate.arguments) == 1 and predicate.value is not None else ()
+    return any(
+        (a.pronoun in ("everything", "anything") or (a.determiner == "all" and a.pronoun in ("other", None)))
+        and not a.head and a.of is None
+        for a in rest
+    )  # fmt: skip
 
 
 class Statements(Relations):
@@ -72,6 +89,11 @@ class Statements(Relations):
         handler = getattr(self, f"_say_{relation}", None)
         if subject.itself.absent and predicate.arguments and self.how.positive and not self.how.past:
             self._found_elsewhere(subject.itself)
+        if subject.role is Role.PART and subject.noun in _DETACHED:
+            own = NounPhrase(self.how.span, head=subject.noun, determiner="the")
+            moved = relation in _APART and bool(predicate.arguments)
+            thing = self.references.find(own) if moved else self.references.earlier(own)
+            subject = thing or subject  # 'the lid of the jar is on the tray'
         if subject.role is Role.PART and subject.whole is not None:
             if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
                 self._add("pointing", (subject.whole,), (), value=relation)
@@ -99,6 +121,8 @@ class Statements(Relations):
             return  # said about a part: 'whose stick is in the pot'
         if handler is not None:
             handler(subject, predicate, others)
+        elif predicate.degree is Degree.COMPARATIVE and _is_all_else(predicate):
+            self._property(subject, replace(predicate, arguments=(), degree=Degree.SUPERLATIVE))
         elif self._is_seen_from_the_viewer(predicate):
             nearer = replace(predicate, relation="bottom" if relation == "near" else "top", degree=Degree.PLAIN)
             self._relate(subject, replace(nearer, arguments=(predicate.than,), than=None), others)  # type: ignore[arg-type]
@@ -148,7 +172,7 @@ class Statements(Relations):
             value = None
         elif value is None or relation in ("other", "position") or value in NOT_STATES:
             return
-        elif relation == "state" and ("being" in predicate.adverbs or Guess.CUT_SHORT in self.how.guesses):
+        elif relation == "state" and ("being" in predicate.adverbs or not UNJOINED.isdisjoint(self.how.guesses)):
             return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
         self._add(relation, (subject,), (), value=value)
 
@@ -171,15 +195,23 @@ class Statements(Relations):
         relation = relation or (last.relation if last is not None and last.relation in ("left", "right") else "next_to")
         if last is not None and last.relation in ("on", "inside", "above", "under"):
             return  # 'on the gravel comes moss, followed by charcoal' tells an order in time
+        before = subject
         for phrase in predicate.arguments:
             for member in phrase.members or (phrase,):
                 following = self._introduce(member, "right", subject)
                 if following is not None:
-                    self._pair(following, relation, subject, False)
+                    self._pair(following, relation, before, False)
                     others.append(following)
+                    before = following
 
     def _say_kind(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read *it is the tallest*, *the third is the shortest of them*, *it is a red cup*."""
+        one = [a for a in predicate.arguments if a.pronoun == "one" and a.determiner is None and not a.head]
+        if one and one == list(predicate.arguments) and subject.itself.members and one[0].predicates:
+            free = [leaf for leaf in subject.leaves() if not leaf.is_picked]
+            if free:  # 'there are two candles: one behind the cross and one in front of it'
+                self._say(self.references.picked(free[0], one[0]), one[0].predicates, one[0])
+            return
         for phrase in predicate.arguments:
             for adjective in phrase.adjectives:
                 name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))

@@ -84,6 +84,7 @@ IDIOMS = tuple(
         "in fact",
         "in addition to",
         "by the way",
+        *("in such a case", "in such case", "in such cases", "in most cases", "in some cases", "in many cases"),
         "at most",
         "at last",
         "if possible",

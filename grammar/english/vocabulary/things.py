@@ -6,6 +6,7 @@ from deixis.grammar.english.vocabulary.adjectives import adjectives
 from deixis.grammar.english.vocabulary.function_words import (
     DETERMINERS,
     MODALS,
+    NUMBERS,
     OTHER_UNITS,
     POSSESSIVES,
 )
@@ -72,7 +73,7 @@ _CONCRETE = word_set(
     " battlement pediment tenement condiment monument refreshment liniment embankment escarpment complement sediment"
     " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
-    " mechanism organism position"
+    " mechanism organism position settlement allotment"
 )
 """Words with the endings of abstract nouns that name things."""
 _QUALIFYING = ("ive", "ful", "less", "ous", "able", "ible", "iest", "cest", "gest")
@@ -107,14 +108,15 @@ _ONLY_VERBS = word_set(
 )
 """Verbs that are not the names of things, as *hold* and *keep* are."""
 _PARTICIPLES = word_set(
-    "placing putting positioning arranging adding keeping leaving making using moving including having"
+    "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
+    " moving including having"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
 _OF_CLAUSES = (
     DETERMINERS
     | POSSESSIVES.keys()
     | MODALS.keys()
-    | word_set("once when while if because that which who then until not than")
+    | word_set("once when while if because that which who then until not than enough")
 ) - word_set("a single only same other need no can")
 """Words that stand in a clause and not inside a name; *can* is a vessel too, and *panel A* a name."""
 
@@ -173,7 +175,8 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     at = words.index("can") if "can" in words[1:-1] else 0
     if at and not nouns.knows(words[at + 1]):
         return True  # 'rules can vary', not 'garbage can lid'
-    if words[0] in _PARTICIPLES:
+    counted = words[0].endswith("ing") and not NUMBERS.keys().isdisjoint(words[1:-1])
+    if words[0] in _PARTICIPLES or counted:  # 'placing lids', 'drilling two screws'
         return True
     for place, word in enumerate(words):
         form = verb_forms().get(word)

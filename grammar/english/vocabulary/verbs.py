@@ -69,6 +69,7 @@ other: destroy, believe, weigh, bake, allow
 other: bind binds bound bound binding, upholster, gild, enamel, lacquer, varnish
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
 transitive: encircle, straddle
+other: burrow, roam, relegate, graze, save, conserve, absorb, soften, maximize, minimize, improve, enhance, achieve
 other: catch catches caught caught catching, break breaks broke broken breaking, tear tears tore torn tearing
 other: hear hears heard heard hearing
 other: pay pays paid paid paying, light lights lit lit lighting, shut shuts shut shut shutting

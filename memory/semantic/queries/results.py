@@ -14,6 +14,7 @@ from typing import Any
 import pyoxigraph as ox
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.memory.errors import QueryError
 from deixis.memory.semantic.queries.limits import CELL_BYTES, ROW_BYTES, QueryLimits
 from deixis.memory.semantic.rdf.files import PREFIXES, short
@@ -227,6 +228,7 @@ class QueryResult(Answer):
             "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines
         ]
 
+    @checks_arguments
     def to_json(self, indent: int | None = 2) -> str:
         """Return SPARQL 1.1 results as JSON; for a graph, its triples in N-Triples.
 

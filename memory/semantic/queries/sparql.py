@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
@@ -26,7 +26,7 @@ from deixis.memory.semantic.queries.tokens import (
 )
 from deixis.memory.semantic.rdf.files import PREFIXES
 from deixis.memory.semantic.rdf.graphs import GRAPHS, READABLE, GraphName, graph_iri
-from deixis.ontology.rdf.triples import typed
+from deixis.ontology.rdf.triples import LEARNED, typed
 from deixis.ontology.rdf.vocabulary import BASE, DX
 from deixis.ontology.relations.relation import nearest
 from deixis.printable import window
@@ -35,7 +35,10 @@ _UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE
 _FORMS = {"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"}
 _PROLOGUE = {"PREFIX", "BASE"}
 
-CLOSED = {"dx": BASE} | {prefix: PREFIXES[prefix] for prefix in ("rdf", "rdfs", "owl", "skos")}
+STANDARD = ("rdf", "rdfs", "owl", "skos", "prov", "dcterms", "sh", "sosa")
+"""Prefixes of the standard vocabularies whose terms rdflib knows."""
+
+CLOSED = {"dx": BASE} | {prefix: PREFIXES[prefix] for prefix in ("dxg", *STANDARD)}
 """Namespaces by prefix of which every term is known, so that a misspelt one is an error."""
 
 MAX_NAMED = 3
@@ -53,6 +56,7 @@ class CheckedQuery:
     ordered: bool
     prefixes: Mapping[str, str]  # the predeclared prefixes that it uses
     terms: tuple[tuple[str, int], ...] = ()  # IRIs in the namespaces of CLOSED, and where each first stands
+    learned: tuple[str, ...] = ()  # IRIs of things that a memory learned
 
 
 class _Text:
@@ -261,20 +265,22 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     asks_graphs = any(token.kind is TokenKind.WORD and token.upper == "GRAPH" for token in found)
     used = {token.text.partition(":")[0] for token in found if token.kind is TokenKind.NAME}
     undeclared = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
-    kind, ordered, terms = QueryKind(form.text.lower()), _ordered(found), _vocabulary_terms(found, known)
-    return CheckedQuery(text.text, kind, names_graphs, asks_graphs, ordered, undeclared, terms)
+    kind, ordered, iris = QueryKind(form.text.lower()), _ordered(found), _iris(found, known)
+    terms = tuple((iri, place) for iri, place in iris.items() if (prefix := _closed(iri)) and iri != CLOSED[prefix])
+    learned = tuple(iri for iri in iris if iri.startswith(LEARNED) and iri != LEARNED)
+    return CheckedQuery(text.text, kind, names_graphs, asks_graphs, ordered, undeclared, terms, learned)
 
 
-def _vocabulary_terms(found: list[Token], known: Mapping[str, str]) -> tuple[tuple[str, int], ...]:
-    """Return the IRIs of the query in the namespaces whose terms are known, each with its first place."""
-    terms: dict[str, int] = {}
+def _iris(found: list[Token], known: Mapping[str, str]) -> dict[str, int]:
+    """Return the IRIs of the query, each with its first place, without those that declare a prefix."""
+    iris: dict[str, int] = {}
     for before, token in zip([None, *found], found, strict=False):
         if token.kind is TokenKind.IRI or (token.kind is TokenKind.NAME and not token.text.startswith("_:")):
             iri = _iri(token, known)
             declared = before is not None and before.upper in ("PREFIX", "BASE")
-            if iri is not None and not declared and (prefix := _closed(iri)) and iri != CLOSED[prefix]:
-                terms.setdefault(iri, token.start)
-    return tuple(terms.items())
+            if iri is not None and not declared:
+                iris.setdefault(iri, token.start)
+    return iris
 
 
 def _closed(iri: str) -> str | None:
@@ -288,9 +294,11 @@ def _terms_of(prefix: str, store: ox.Store) -> set[str]:
         subjects = {quad.subject for quad in store.quads_for_pattern(None, None, None, graph_iri(GraphName.ONTOLOGY))}
         known = {subject.value for subject in subjects if isinstance(subject, ox.NamedNode)}
         return {value.removeprefix(BASE) for value in known if value.startswith(BASE)}
-    from rdflib import OWL, RDF, RDFS, SKOS
+    if prefix == "dxg":
+        return {graph.value.removeprefix(GRAPHS) for graph in READABLE}
+    import rdflib
 
-    terms = dir({"rdf": RDF, "rdfs": RDFS, "owl": OWL, "skos": SKOS}[prefix])
+    terms = dir(getattr(rdflib, prefix.upper()))
     return {str(term).removeprefix(CLOSED[prefix]) for term in terms if not str(term).startswith("_")}
 
 
@@ -310,13 +318,7 @@ def require_terms(store: ox.Store, sparql: str) -> None:
         If it does; the message suggests the nearest term.
     """
     for iri, place in _admitted(sparql).terms:
-        term = ox.NamedNode(iri)
-        uses = (
-            store.quads_for_pattern(term, None, None),
-            store.quads_for_pattern(None, term, None),
-            store.quads_for_pattern(None, None, term),
-        )
-        if any(next(iter(found), None) for found in uses):
+        if _is_used(iri, store):
             continue
         prefix = _closed(iri) or "dx"
         name, names = iri.removeprefix(CLOSED[prefix]), _terms_of(prefix, store)
@@ -326,7 +328,53 @@ def require_terms(store: ox.Store, sparql: str) -> None:
         hint = f"; did you mean '{prefix}:{near}'?" if near else ""
         if not near and prefix == "dx":
             hint = "; docs/reference/ontology.md lists the terms"
-        raise _Text(sparql).error(place, f"the vocabulary has no term '{prefix}:{name}'{hint}")
+        what = "the memory does not have this graph:" if prefix == "dxg" else "the vocabulary has no term"
+        raise _Text(sparql).error(place, f"{what} '{prefix}:{name}'{hint}")
+
+
+def _is_used(iri: str, store: ox.Store) -> bool:
+    """Return whether a memory has a statement with an IRI."""
+    term = ox.NamedNode(iri)
+    uses = (
+        store.quads_for_pattern(term, None, None),
+        store.quads_for_pattern(None, term, None),
+        store.quads_for_pattern(None, None, term),
+    )
+    return any(next(iter(found), None) for found in uses)
+
+
+def unknown_things(store: ox.Store, sparql: str) -> Iterator[str]:
+    """Yield a note for each learned thing that a query names and the memory does not have.
+
+    Parameters
+    ----------
+    store
+        The memory.
+    sparql
+        An admitted query.
+
+    Yields
+    ------
+    str
+        A sentence without a full stop, which suggests the nearest name.
+    """
+    missing = [iri for iri in _admitted(sparql).learned if not _is_used(iri, store)]
+    if not missing:
+        return
+    subjects = {quad.subject for quad in store.quads_for_pattern(None, None, None)}
+    known = [subject.value for subject in subjects if isinstance(subject, ox.NamedNode)]
+    known = [iri for iri in known if iri.startswith(LEARNED)]
+    for iri in missing:
+        if any(one.startswith(iri) for one in known):  # the query compares the beginnings of IRIs
+            continue
+        near = nearest(iri, known)
+        hint = f"; did you mean '{_in_query(near)}'?" if near else ""
+        yield f"the memory has no '{_in_query(iri)}'{hint}"
+
+
+def _in_query(iri: str) -> str:
+    """Return the IRI of a learned thing as a query can name it."""
+    return f"lx:{iri.removeprefix(LEARNED)}".replace("/", "\\/")
 
 
 def incomplete_layouts(store: ox.Store, sparql: str) -> tuple[str, ...]:
@@ -368,11 +416,13 @@ def notes_on(store: ox.Store, sparql: str) -> tuple[str, ...]:
     tuple of str
         Sentences without a full stop; empty if the answer lacks nothing.
     """
+    unknown = tuple(unknown_things(store, sparql))
     names = incomplete_layouts(store, sparql)
     if not names:
-        return ()
+        return unknown
     listed = ", ".join(names[:MAX_NAMED]) + (f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else "")
     return (
+        *unknown,
         "the memory does not store all that these layouts imply, so their part of the answer may be incomplete: "
         f"{listed}; 'deixis infer' on the script that 'deixis show' prints computes it",
     )
@@ -422,7 +472,9 @@ def _iri(token: Token, known: Mapping[str, str]) -> str:
     if token.kind is TokenKind.IRI:
         return token.text[1:-1]
     prefix, _, local = token.text.partition(":")
-    return known.get(prefix, "") + local
+    return known.get(prefix, "") + re.sub(
+        r"\\(.)", r"\1", local
+    )  # a sign is written with a backslash: lx:layout\/tea-1
 
 
 def _ordered(found: list[Token]) -> bool:

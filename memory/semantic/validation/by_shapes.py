@@ -132,7 +132,7 @@ def _check(folder: Path) -> None:
     import rdflib
     from pyshacl.errors import ConstraintLoadError, ReportableRuntimeError, ShapeLoadError
 
-    from deixis.memory.semantic.validation.shacl import quiet
+    from deixis.memory.semantic.validation.shacl import quiet, report_turtle
 
     data, shapes = (rdflib.Graph().parse(folder / f"{name}.nt", format="nt") for name in ("data", "shapes"))
     with quiet():
@@ -152,7 +152,7 @@ def _check(folder: Path) -> None:
     answer = {
         "conforms": conforms,
         "results": [asdict(result) for result in results],
-        "turtle": report.serialize(format="turtle"),
+        "turtle": report_turtle(report),
     }
     (folder / "report.json").write_text(json.dumps(answer, ensure_ascii=False), encoding="utf-8")
 

@@ -153,6 +153,49 @@ def quiet() -> Iterator[None]:
         logger.setLevel(level)
 
 
+def report_turtle(report: rdflib.Graph) -> str:
+    """Return a report as Turtle in an order that depends on its content only.
+
+    rdflib orders blank nodes by their random names; they are renamed in the order of what they say. The canonical
+    graph of rdflib would do too, but it takes minutes for a few hundred results.
+
+    Parameters
+    ----------
+    report
+        Validation report of pyshacl.
+
+    Returns
+    -------
+    str
+        The report; equal reports give equal texts.
+    """
+    import rdflib
+
+    known: dict[rdflib.term.Node, str] = {}
+
+    def content(node: rdflib.term.Node, above: tuple[rdflib.term.Node, ...] = ()) -> str:
+        if not isinstance(node, rdflib.BNode):
+            return node.n3()
+        if node not in known and node not in above:
+            inside = (
+                (predicate.n3(), content(value, (*above, node))) for predicate, value in report.predicate_objects(node)
+            )
+            known[node] = str(sorted(inside))
+        return known.get(node, "")
+
+    def place(node: rdflib.BNode) -> tuple[str, list[str]]:
+        return content(node), sorted(content(subject) for subject in report.subjects(None, node))
+
+    nodes = {node for node in report.all_nodes() if isinstance(node, rdflib.BNode)}
+    names: dict[rdflib.term.Node, rdflib.BNode] = {
+        node: rdflib.BNode(f"b{number:06}") for number, node in enumerate(sorted(nodes, key=place))
+    }
+    named = rdflib.Graph(namespace_manager=report.namespace_manager)
+    for subject, predicate, value in report:
+        named.add((names.get(subject, subject), predicate, names.get(value, value)))
+    return named.serialize(format="turtle")
+
+
 def _result(found: rdflib.Graph, node: rdflib.term.Node, names: rdflib.Graph) -> ShapeResult:
     import rdflib
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.simulator.films.camera_paths import CameraPath
-from deixis.perception.simulator.films.motion import Action, Bring, Film, Move, PassOver, Rest, Stage, TakeAway
+from deixis.perception.simulator.films.film import Film
+from deixis.perception.simulator.films.stage import Action, Bring, Move, PassOver, Rest, Stage, TakeAway
 from deixis.perception.simulator.laying import (
     LaidThing,
     Placement,
@@ -224,6 +225,6 @@ class FilmSource:
         ------
         Frame
             Cloud in the camera's frame, with the truth: a
-            :class:`~deixis.perception.simulator.films.motion.FilmedFrame`.
+            :class:`~deixis.perception.simulator.films.film.FilmedFrame`.
         """
         yield from self._film.frames(self._rate, self._seed)

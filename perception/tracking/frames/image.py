@@ -257,3 +257,27 @@ def table_view(optics: Optics, back: NDArray[np.float64], shape: tuple[int, int]
     with np.errstate(divide="ignore", invalid="ignore"):
         level = np.where(drop * height < 0, -height / drop, np.inf)
     return TableView(matrix, offset, back, level.astype(np.float32))
+
+
+def enlarged(mask: NDArray[np.bool_], stride: int, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Return a mask of every ``stride``-th pixel as one of all pixels.
+
+    Parameters
+    ----------
+    mask
+        Mask (r, c) of the pixels that are compared.
+    stride
+        Every how many rows and columns are compared.
+    shape
+        Rows and columns of the whole image.
+
+    Returns
+    -------
+    ndarray
+        Mask of this shape.
+    """
+    large = np.repeat(np.repeat(mask, stride, axis=0), stride, axis=1)
+    whole = np.zeros(shape, np.bool_)
+    rows, columns = min(shape[0], large.shape[0]), min(shape[1], large.shape[1])
+    whole[:rows, :columns] = large[:rows, :columns]
+    return whole

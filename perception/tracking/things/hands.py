@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.tracking.frames.image import FrameImage
+from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.outline import MIN_OUTSIDE_PIXELS, Outline
-from deixis.perception.tracking.table.reference import GAP, Changes
+from deixis.perception.tracking.table.reference import GAP, Changes, Reference
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 HAND_MARGIN = 4
@@ -33,6 +34,9 @@ LOW = 0.03
 
 MEMORY = 30.0
 """Time in seconds for which the places of hands are kept."""
+
+MIN_MOVING_PIXELS, MIN_MOVING_HEIGHT = 80, 0.01
+"""Minimum number of pixels of something that moves and is not a thing, and their minimum height in metres."""
 
 REACH = 0.12
 """Distance in metres from the end of a hand within which it holds the side of a thing."""
@@ -163,6 +167,50 @@ class Hands:
             if np.linalg.norm(step) < MAX_STEP:
                 self._before[k] = before[nearest]
                 self._steps[k] = last[nearest] if np.linalg.norm(step - last[nearest]) > MAX_CHANGE else step
+
+
+def something_moves(
+    image: FrameImage,
+    changes: Changes,
+    reference: Reference,
+    back: NDArray[np.float64],
+    things: Iterable[Pipeline],
+    at: float,
+    settings: TrackingSettings,
+) -> bool:
+    """Return True if something moves that is not one of the things, such as a part of a hand.
+
+    Parameters
+    ----------
+    image, changes
+        The frame, and its comparison with the reference.
+    reference
+        The table at rest.
+    back
+        Transform (4, 4) from the frame of the cloud to that of the table.
+    things
+        All things.
+    at
+        Time of the frame in seconds.
+    settings
+        Options of the tracker.
+
+    Returns
+    -------
+    bool
+        False if all that moves is within the boxes of things, or as low as the table.
+    """
+    from deixis.perception.tracking.kernels import NEARER
+
+    moves = (changes.state == NEARER) & (at - reference.since < 0.5 * settings.steady)
+    place = np.flatnonzero(moves & (image.depth > 0))
+    if len(place) < MIN_MOVING_PIXELS:
+        return False
+    points = image.places(place, back)
+    strange = points[:, 2] > MIN_MOVING_HEIGHT
+    for thing in things:
+        strange &= ~thing.contains(points, settings.margin)
+    return bool(strange.sum() >= MIN_MOVING_PIXELS)
 
 
 def _tip(points: NDArray[np.float64], root: NDArray[np.bool_]) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import turned_axes
 from deixis.perception.tracking.frames.image import TableView
 from deixis.perception.tracking.table.reference import Reference
-from deixis.perception.tracking.things.completion import FLAT, MIN_BEFORE, MIN_SLENDERNESS
+from deixis.perception.tracking.things.missing_parts import FLAT, MIN_BEFORE, MIN_SLENDERNESS
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 STEP = 0.003
@@ -25,6 +25,10 @@ STEP = 0.003
 MAX_GAP = 0.005
 """Distance in metres from an end, or from the last pixel that shows the thing, within which what hides it begins. Where
 the table is seen between the two, the end is seen."""
+
+END, ACROSS = 0.01, (0.1, 0.5, 0.9)
+"""Length in metres of the end of a thing whose points say where across its box it goes on, and the quantiles of these
+points at which that is looked at."""
 
 MAX_BEYOND = 0.3
 """Largest distance in metres beyond an end at which a thing is looked for."""
@@ -68,25 +72,44 @@ def hidden_lengths(
     length, width, height = thing.oriented.extents
     if length < MIN_SLENDERNESS * width or height > FLAT:
         return 0.0, 0.0
-    axes = turned_axes(thing.oriented.yaw) @ thing.pose[:3, :3].T
-    middle = thing.placed_corners.mean(axis=0)
     others = list(others)
     own = (reference.owner == thing.slot) | (reference.depth <= 0)  # it continues where it is seen, or nothing is known
     unless_own = np.where(own, NEAREST, reference.depth)
     steps = np.arange(STEP, MAX_BEYOND, STEP)
     found = []
     for sign in (-1, 1):
-        places = middle + sign * (length / 2 + steps[:, None]) * axes[0]
-        hidden = view.hides(places, reference.depth, MIN_BEFORE)
-        goes_on = view.hides(places, unless_own, MIN_BEFORE)
-        seen = float(steps[int((hidden | ~goes_on).argmax())]) - STEP
-        near = steps < seen + MAX_GAP
-        if not hidden[near].any():
-            found.append(0.0)
-            continue
-        free = (~goes_on & ~near) | np.any([other.contains(places, 0.0) for other in others], axis=0)
-        found.append(float(steps[int(free.argmax())] - STEP) if free.any() else MAX_BEYOND)
+        lengths = []
+        for start, direction in _lines_beyond(thing, sign):
+            places = start + steps[:, None] * direction
+            hidden = view.hides(places, reference.depth, MIN_BEFORE)
+            goes_on = view.hides(places, unless_own, MIN_BEFORE)
+            seen = float(steps[int((hidden | ~goes_on).argmax())]) - STEP
+            near = steps < seen + MAX_GAP
+            if not hidden[near].any():
+                lengths.append(0.0)
+                continue
+            free = (~goes_on & ~near) | np.any([other.contains(places, 0.0) for other in others], axis=0)
+            lengths.append(float(steps[int(free.argmax())] - STEP) if free.any() else MAX_BEYOND)
+        found.append(float(np.median(lengths)))  # one line may pass an edge of what hides the end
     return found[0], found[1]
+
+
+def _lines_beyond(thing: Pipeline, sign: int) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Return the starts and the directions of lines beyond one end of a thing, across the width that is seen there.
+
+    A bent or unevenly wide thing, such as a spoon, does not end in the middle of its box.
+    """
+    length, _, _ = thing.oriented.extents
+    axes = turned_axes(thing.oriented.yaw)
+    own = (thing.cloud.points.astype(np.float64) - np.array(thing.oriented.centre)) @ axes.T
+    last = own[sign * own[:, 0] > length / 2 - END]
+    if not len(last):
+        last = np.zeros((1, 3))
+    across, height = np.quantile(last[:, 1], ACROSS), float(np.median(last[:, 2]))
+    starts = np.column_stack([np.full(len(across), sign * length / 2), across, np.full(len(across), height)])
+    places = (np.array(thing.oriented.centre) + starts @ axes) @ thing.pose[:3, :3].T + thing.pose[:3, 3]
+    direction = sign * thing.pose[:3, :3] @ axes[0]
+    return [(place, direction) for place in places]
 
 
 def likely_length(seen: float, width: float, most: float) -> tuple[float, float]:

@@ -5,7 +5,6 @@ The particle filter is that of :mod:`deixis.perception.tracking.things.particles
 
 from __future__ import annotations
 
-import itertools
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -21,34 +20,30 @@ from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import State, TrackedThing
 from deixis.perception.tracking.table.reference import Beneath
-from deixis.perception.tracking.things.particles import Estimate, ParticleFilter, turned_by
+from deixis.perception.tracking.things.likeness import SHADE_SPREAD, likeness
+from deixis.perception.tracking.things.model import Model, extended, standing
+from deixis.perception.tracking.things.particles import Estimate, ParticleFilter
+from deixis.perception.tracking.things.sight import Sight, quaternion
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-HIDDEN_SCORE, EMPTY_SCORE = 0.12, -0.35
-"""Scores of a point that something may hide, and of a point where something should be seen and is not."""
+COLOURS = 8
+"""Number of colours of a thing with which changed pixels are compared."""
+
+MIN_POINTS_BEYOND = 5
+"""Minimum number of points outside its box at which the box of a thing is extended."""
+
+MIN_BETTER = 0.02
+"""Minimum gain of score for which the pose of a thing at rest is corrected."""
 
 FAR_SCORE = 0.06
 """Penalty of a place that is ``jump`` or farther from the predicted one. Without it, a place where something may hide
 all points can have a better score than the place where some are seen.
 """
 
-COVERED_MARGIN, MIN_BETTER = 0.003, 0.02
-"""Distance in metres by which the box of a thing is extended to cover the points that show it at rest, and the least
-gain of score for which its pose is corrected.
-"""
-
-ALIGN_STEP, ALIGN_END = (0.012, 0.012, np.deg2rad(6.0)), 0.001
-"""First steps in metres and radians of the search for a better pose at rest, and the step at which it ends."""
-
 MIN_ALIGNED = 0.6
 """Minimum share of the points of a thing that nothing hides, within the image, for its pose at rest to be corrected."""
-
-SHADE_SPREAD, COLOUR_SPREAD = 38.0, 15.0
-"""Standard deviations of the colours of one place of a thing, as distances in RGB from 0 to 255: of the length of the
-colour, which changes with the light on a turned surface, and across that direction.
-"""
 
 PLACE_SPREAD, LEAST_LIKENESS = 0.005, 0.02
 """Standard deviation in metres of a measured place of a thing from its nearest known point, and the least likeness of
@@ -57,15 +52,6 @@ a colour, beyond which it may be a part of another colour.
 
 SUSPECTED_VIEWS = 3
 """Number of views of which the parts that the thing may have are kept until another view confirms them."""
-
-COLOURS = 8
-"""Number of colours of a thing with which changed pixels are compared."""
-
-LEAST_INSIDE = 0.08
-"""Minimum share of the points of a thing that are within the image, for it to be seen well."""
-
-MIN_POINTS_BEYOND = 5
-"""Minimum number of points outside its box at which the box of a thing is extended."""
 
 NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""
@@ -408,9 +394,10 @@ class Pipeline:
             The estimate; the mean agreement of the points that are not hidden; and the share of points that are seen,
             of those within the image.
         """
+        sight = Sight(self._points, self._colours, image, view, taken, noise)
 
         def weigh(places: NDArray[np.float64], turns: NDArray[np.float64]) -> NDArray[np.float64]:
-            found, _ = self._scores(places, turns, image, view, taken, noise)
+            found, _ = sight.scores(places, turns)
             away = np.linalg.norm(places - ahead, axis=1)
             found -= FAR_SCORE * np.minimum(away / self.settings.jump, 1.0)
             return found
@@ -431,8 +418,8 @@ class Pipeline:
         self._velocity = self._filter.velocity.copy()
         found = self._filter.step(weigh, guide if likely else None, seconds, lost=not self.found)
         self.particles = found.particles
-        inliers, exposed, inside = self._seen(found.place, found.turn, image, view, taken, noise)
-        return found, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
+        agreement = sight.agreement(found.place, found.turn)
+        return found, agreement.fit, agreement.visible
 
     def align(
         self,
@@ -460,9 +447,10 @@ class Pipeline:
         noise
             Standard deviation of depths at one metre.
         """
-        if self.seen_at_place(image, view, taken, noise)[1] < MIN_ALIGNED:
+        sight = Sight(self._points, self._colours, image, view, taken, noise)
+        if sight.agreement(self.pose[:3, 3], quaternion(self.pose)).exposed < MIN_ALIGNED:
             return
-        pose, gain = self._shifted(self.pose, image, view, taken, own, noise)
+        pose, gain = sight.shifted(self.pose, self.oriented, self._few(own))
         if gain > MIN_BETTER:
             self.pose = self._rest = pose
             self._filter.reset(pose)
@@ -491,49 +479,15 @@ class Pipeline:
             The pose, the share of the points that agree, of those that nothing hides, and the share that agrees, of
             those within the image.
         """
-        pose, _ = self._shifted(start, image, view, taken, own, noise)
-        inliers, exposed, inside = self._seen(pose[:3, 3], _quaternion(pose), image, view, taken, noise)
-        return pose, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
+        sight = Sight(self._points, self._colours, image, view, taken, noise)
+        pose, _ = sight.shifted(start, self.oriented, self._few(own))
+        agreement = sight.agreement(pose[:3, 3], quaternion(pose))
+        return pose, agreement.fit, agreement.visible
 
-    def _shifted(
-        self,
-        start: NDArray[np.float64],
-        image: FrameImage,
-        view: TableView,
-        taken: NDArray[np.bool_],
-        own: NDArray[np.float64],
-        noise: float,
-    ) -> tuple[NDArray[np.float64], float]:
-        """Return the best pose that is shifted along the table and turned about z from another, and its gain."""
-        from deixis.perception.tracking.kernels import covered
-
-        own = own[np.linspace(0, len(own) - 1, min(len(own), self.settings.particles.points)).astype(np.int64)]
-        centre, half = np.array(self.oriented.centre), np.array(self.oriented.extents) / 2 + COVERED_MARGIN
-
-        def weigh(places: NDArray[np.float64], turns: NDArray[np.float64]) -> NDArray[np.float64]:
-            found, seen = self._scores(places, turns, image, view, taken, noise)
-            exposed = seen[:, 1] / len(self._points)
-            found = (found - HIDDEN_SCORE * (1 - exposed)) / np.maximum(exposed, LEAST_INSIDE)
-            found += covered(places, turns, own, centre, self.oriented.yaw, half)
-            return found
-
-        moved, turned = np.zeros((1, 3)), _quaternion(start)[None]
-        best = first = float(weigh(start[None, :3, 3], turned)[0])
-        step, directions = np.array(ALIGN_STEP), np.array(list(itertools.product((-1, 0, 1), repeat=3)))
-        while step[0] >= ALIGN_END:
-            tried = moved + step * directions
-            places = start[:3, 3] + np.column_stack([tried[:, :2], np.zeros(len(tried))])
-            scores = weigh(places, turned_by(np.outer(tried[:, 2], (0.0, 0.0, 1.0)), turned.repeat(len(tried), axis=0)))
-            if scores.max() > best:
-                best, moved = float(scores.max()), tried[scores.argmax()][None]
-            else:
-                step = step / 2
-        x, y, angle = moved[0]
-        cosine, sine = np.cos(angle), np.sin(angle)
-        pose = start.copy()
-        pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ pose[:3, :3]
-        pose[:2, 3] += x, y
-        return pose, best - first
+    def _few(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return at most as many of some points as are compared of the thing."""
+        few = min(len(points), self.settings.particles.points)
+        return points[np.linspace(0, len(points) - 1, few).astype(np.int64)]
 
     def likeness(self, tints: NDArray[np.float64], shade: float = SHADE_SPREAD) -> NDArray[np.float64]:
         """Return how well colours agree with those of the thing.
@@ -644,44 +598,17 @@ class Pipeline:
             Share of the points that agree, of those that nothing hides; and the share of points that nothing hides.
         """
         at = self.pose if pose is None else pose
-        inliers, exposed, _ = self._seen(at[:3, 3], _quaternion(at), image, view, taken, noise)
-        return inliers / max(exposed, 1.0), exposed / len(self._points)
+        sight = Sight(self._points, self._colours, image, view, taken, noise)
+        agreement = sight.agreement(at[:3, 3], quaternion(at))
+        return agreement.fit, agreement.exposed
 
-    def _seen(
-        self,
-        place: NDArray[np.float64],
-        turn: NDArray[np.float64],
-        image: FrameImage,
-        view: TableView,
-        taken: NDArray[np.bool_],
-        noise: float,
-    ) -> tuple[float, float, float]:
-        """Return the numbers of points that agree with a frame, that nothing hides, and that are within the image."""
-        _, seen = self._scores(place[None], turn[None], image, view, taken, noise)
-        return float(seen[0, 0]), float(seen[0, 1]), float(seen[0, 2])
-
-    def _scores(
-        self,
-        places: NDArray[np.float64],
-        turns: NDArray[np.float64],
-        image: FrameImage,
-        view: TableView,
-        taken: NDArray[np.bool_],
-        noise: float,
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the scores (n,) of poses in a frame, and the numbers (n, 3) of points that are seen, as `scores`."""
-        from deixis.perception.tracking.kernels import scores
-
-        found: tuple[NDArray[np.float64], NDArray[np.float64]] = scores(
-            places, turns, self._points, self._colours, view.matrix, view.offset, image.depth, image.colour, taken,
-            0.003, 2 * noise, SHADE_SPREAD, COLOUR_SPREAD, HIDDEN_SCORE, EMPTY_SCORE,
-        )  # fmt: skip
-        return found
+    @property
+    def model(self) -> Model:
+        """Points, boxes and pose as they are known now."""
+        return Model(self.cloud, self.half, self.oriented, self.pose)
 
     def extend(self, points: NDArray[np.float64], colours: NDArray[np.float32], settings: OutlineSettings) -> None:
         """Add points that belong to the thing, and extend its box and move its origin where they lie outside.
-
-        The box of an upright round thing keeps its hidden back, such as that of a mug whose handle comes into view.
 
         Parameters
         ----------
@@ -692,42 +619,27 @@ class Pipeline:
         settings
             Share of outermost points that are noise.
         """
-        from deixis.perception.detection.outline import Circle, oriented_box, upright_box
-        from deixis.perception.tracking.things.revolution import circle_around
-
         if (~self.contains(points, 0.0)).sum() < MIN_POINTS_BEYOND:
             return
-        turn = self.pose[:3, :3]
-        own = self.cloud.points.astype(np.float64) @ turn.T + self.pose[:3, 3]
-        everything = np.concatenate([own, points])
         ends = self._supposed_ends()
-        circle = circle_around(everything) or circle_around(own)
-        box = upright_box(everything, settings, circle)
-        around = oriented_box(everything, settings, circle)
-        middle = box.mean(axis=0)
-        yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
-        shades = np.zeros((len(own), 3), np.uint8) if self.cloud.colours is None else self.cloud.colours
-        both = np.concatenate([shades, np.clip(colours, 0, 255).astype(np.uint8)])
-        local = (everything - middle) @ turn
-        self.cloud = PointCloud(local.astype(np.float32), None if self.cloud.colours is None else both)
-        if yaw != 0:  # the sides of the box lie along the thing's own axes
-            box = np.stack([local.min(axis=0), local.max(axis=0)])
-            if circle is not None:
-                box = Circle(circle.centre - middle[:2], circle.radius).turned(turn[:2, :2].T).enclosed_by(box)
-        self.half = (box[1] - box[0]) / 2
-        self.oriented = OrientedBox(
-            tuple(((np.array(around.centre) - middle) @ turn).tolist()), around.yaw - yaw, around.extents
-        )
-        self.pose = self.pose.copy()
-        self.pose[:3, 3] = middle
+        self._take(extended(self.model, points, colours, settings))
         self._ends_seen = False, False
         if any(self._unseen):  # they end where they were supposed to end
             along, (first, last) = self._along_in_table(), self._supposed_ends(seen=True)
             before, after = np.sort(ends @ along)
             self._unseen = max(float(first @ along - before), 0.0), max(float(after - last @ along), 0.0)
             self._spread = self._spread if any(self._unseen) else 0.0
-        self._rest = self.pose
         self._middles.append((self.seen_at, self.report(self.seen_at).centre))
+
+    def stand(self) -> None:
+        """Extend the box of the thing down to the table, on which it stands with a hidden foot."""
+        self._take(standing(self.model))
+        self._middles.append((self.seen_at, self.pose[:3, 3]))
+
+    def _take(self, model: Model) -> None:
+        """Take other points, boxes and a pose at the present rest."""
+        self.cloud, self.half, self.oriented = model.cloud, model.half, model.oriented
+        self.pose = self._rest = model.pose
         self._choose_points()
         self._filter.reset(self.pose)
 
@@ -774,22 +686,6 @@ class Pipeline:
         reach = np.array([-1, 1]) * (self.oriented.extents[0] / 2 + unseen)
         ends: NDArray[np.float64] = middle + reach[:, None] * self._along_in_table()
         return ends
-
-    def stand(self) -> None:
-        """Extend the box of the thing down to the table, on which it stands with a hidden foot."""
-        top = float(self.pose[2, 3] + self.oriented.centre[2] + self.oriented.extents[2] / 2)
-        x, y, _ = self.oriented.centre
-        points = self.cloud.points.copy()
-        points[:, 2] += np.float32(self.pose[2, 3] - top / 2)
-        self.cloud = PointCloud(points, self.cloud.colours)
-        self.half = np.array([*self.half[:2], top / 2])
-        self.oriented = OrientedBox((x, y, 0.0), self.oriented.yaw, (*self.oriented.extents[:2], top))
-        self.pose = self.pose.copy()
-        self.pose[2, 3] = top / 2
-        self._rest = self.pose
-        self._middles.append((self.seen_at, self.pose[:3, 3]))
-        self._choose_points()
-        self._filter.reset(self.pose)
 
     def moved_to(self, pose: NDArray[np.float64], at: float, agreement: float) -> None:
         """Take a pose that was found in a frame.
@@ -931,44 +827,6 @@ class Pipeline:
             moving=self.active and self.found,
             spread=self._spread / 2,
         )
-
-
-def likeness(
-    tints: NDArray[np.float64], colours: NDArray[np.float64], shade: float = SHADE_SPREAD
-) -> NDArray[np.float64]:
-    """Return how well colours agree with the nearest of some others, in the light of any side of a thing.
-
-    Parameters
-    ----------
-    tints
-        Colours of shape (k, 3), from 0 to 255.
-    colours
-        Colours of shape (m, 3) that they may be.
-    shade
-        Standard deviation of the lengths of the colours, which change with the light.
-
-    Returns
-    -------
-    ndarray
-        Likeness in [0, 1], shape (k,).
-    """
-    least = np.full(len(tints), np.inf)
-    other = (tints**2).sum(axis=1)
-    for colour in colours:
-        own = float(colour @ colour)
-        across = other - (tints @ colour) ** 2 / max(own, 1.0)
-        along = (np.sqrt(other) - np.sqrt(own)) ** 2
-        least = np.minimum(least, along / shade**2 + across / COLOUR_SPREAD**2)
-    found: NDArray[np.float64] = np.exp(-0.5 * least)
-    return found
-
-
-def _quaternion(pose: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the rotation of a transform (4, 4) as a unit quaternion (4,), real part first."""
-    from scipy.spatial.transform import Rotation
-
-    turn: NDArray[np.float64] = Rotation.from_matrix(pose[:3, :3]).as_quat()[[3, 0, 1, 2]]
-    return turn
 
 
 def _rotated(turns: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:

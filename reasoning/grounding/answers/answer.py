@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.ontology.graph.graph import Fact
 from deixis.ontology.lessons.types import Alternative, Match
 from deixis.ontology.relations.relation import Relation
@@ -239,6 +240,7 @@ class Grounding(Answer):
             parts.append(f"fits {self.fits:.2f}")
         return ", ".join(parts)
 
+    @checks_arguments
     def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
         """Return the facts with one outcome.
 
@@ -318,6 +320,7 @@ class Grounding(Answer):
         """Facts that hold of the matched pairs."""
         return self.of(Outcome.SATISFIED)
 
+    @checks_arguments
     def noting(self, notes: tuple[str, ...]) -> Grounding:
         """Return a copy of the answer with further notes.
 

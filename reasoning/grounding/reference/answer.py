@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from deixis.answers import Answer
@@ -61,6 +61,8 @@ class Reference(Answer):
         Questions that were asked, with their answers.
     notes
         Warnings about the text.
+    scene
+        The scene, for pictures.
 
     Examples
     --------
@@ -83,6 +85,7 @@ class Reference(Answer):
     question: Question | None = None
     turns: tuple[Turn, ...] = ()
     notes: tuple[str, ...] = ()
+    scene: object | None = field(default=None, compare=False)
 
     @property
     def decided(self) -> bool:

@@ -16,6 +16,7 @@ from deixis.deadline import Deadline
 from deixis.printable import visible_line
 
 if TYPE_CHECKING:
+    from deixis.answers import Answer
     from deixis.perception.scene import Scene
 
 NO, BAD_INPUT, UNDECIDED = 1, 2, 3
@@ -72,6 +73,19 @@ def print_written(*files: Path | None, aside: bool = False) -> None:
     for file in files:
         if file is not None:
             print(visible_line(f"Written: {file}"), file=sys.stderr if aside else sys.stdout)
+
+
+def draw_answer(answer: Answer, plot: Path | None, as_json: bool) -> None:
+    """Draw an answer to a file, if there is one, and print the name of the file unless the output is JSON."""
+    if plot is None:
+        return
+    from deixis.cli.progress import progress_bar
+    from deixis.plots.figure import save
+
+    with progress_bar("drawing"):
+        save(answer.plot(), plot)
+    if not as_json:
+        print_written(plot)
 
 
 def print_or_write(text: str, out: Path | None) -> None:

@@ -1,6 +1,7 @@
 """Progress of long work: count and time on standard error, on a terminal only.
 
 The bar appears after :data:`PATIENCE` seconds and goes when the work ends. It has no colours where ``NO_COLOR`` is set.
+Work whose steps cannot be counted shows the time that has passed.
 """
 
 from __future__ import annotations
@@ -50,16 +51,35 @@ class _LateBar:
 
     def _appear(self) -> None:
         from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Task,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
         from rich.progress import Progress as Bar
+        from rich.text import Text
+
+        class Count(MofNCompleteColumn):
+            """Number of steps that are done; nothing for work whose steps are not counted."""
+
+            def render(self, task: Task) -> Text:
+                return Text() if task.total is None else super().render(task)
+
+        class TimeLeft(TimeRemainingColumn):
+            """Estimated time until the last step is done; nothing for work whose steps are not counted."""
+
+            def render(self, task: Task) -> Text:
+                return Text() if task.total is None else Text("left: ") + super().render(task)
 
         columns = (
             TextColumn("{task.description}", markup=False),
             BarColumn(),
-            MofNCompleteColumn(),
+            Count(),
             TimeElapsedColumn(),
-            TextColumn("left:"),
-            TimeRemainingColumn(),
+            TimeLeft(),
         )
         bar = Bar(*columns, console=Console(file=self._stream), transient=True)
         with self._lock:
@@ -118,22 +138,21 @@ def stage_bar(*stages: str) -> Iterator[Callable[[str], None]]:
 def time_bar(what: str, limit: float, source: str | None = None) -> Iterator[None]:
     """Show a progress bar of the seconds of a time limit, for work whose steps cannot be counted.
 
-    There is no bar while a user types the ``source`` of the work, which is then ``-``.
+    Without a limit, the bar shows the time that has passed. There is no bar while a user types the ``source`` of the
+    work, which is then ``-``.
     """
     if source == "-" and sys.stdin is not None and sys.stdin.isatty():
         yield
         return
     with progress_bar(what) as progress:
-        if progress is None:
+        if progress is None or math.isinf(limit):
             yield
             return
         begun, ended = time.monotonic(), Event()
 
         def run() -> None:
             while not ended.wait(SECONDS_SHOWN):
-                seconds = time.monotonic() - begun
-                shown = (round(seconds), None) if math.isinf(limit) else (round(min(seconds, limit)), round(limit))
-                progress(*shown, f"{what}, seconds")
+                progress(round(min(time.monotonic() - begun, limit)), round(limit), f"{what}, seconds")
 
         clock = Thread(target=run, daemon=True)
         clock.start()

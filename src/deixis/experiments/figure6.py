@@ -11,16 +11,17 @@ node orders, and each accuracy is given with its spread over them, and up to int
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import combinations
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from deixis.answers import Answer, count
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph.graph import PaperGraph, RelationGraph
@@ -35,44 +36,9 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evid
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.workflows.layouts.read import read_script
 
-
-def plot_points(points: Points, path: Path, title: str, rho: float) -> None:
-    """Plot graph similarity against the share named correctly, one point per sub-graph, coloured by satisfied facts.
-
-    Parameters
-    ----------
-    points
-        Sub-graphs of one scene.
-    path
-        File of the picture: ``.png``, ``.svg`` or ``.pdf``.
-    title
-        Title, to which the correlation is added.
-    rho
-        Spearman's rank correlation of the similarity with the share named correctly, in [-1, 1].
-
-    Raises
-    ------
-    DeixisError
-        If the file cannot be written, or its ending is not that of a picture.
-    MissingExtraError
-        If matplotlib is not installed.
-    """
-    figure, axes = new_figure(6.4, 4.4)
-    drawn = axes.scatter(
-        points.similarity, points.right, c=points.facts, cmap="viridis", s=18, alpha=0.75, linewidths=0
-    )
-    bar = figure.colorbar(drawn, ax=axes, pad=0.02)
-    bar.set_label("satisfied facts (sum of degrees)", color=INK, fontsize=9)
-    bar.outline.set_edgecolor(QUIET)
-    axes.set_xlabel("overall graph similarity", color=INK, fontsize=9)
-    axes.set_ylabel("share of objects named right\n(mean over node orders)", color=INK, fontsize=9)
-    axes.set_title(f"{title}, Spearman's ρ = {rho:.2f}", color=INK, fontsize=11, loc="left")
-    axes.set_ylim(-0.03, 1.03)
-    axes.set_facecolor(PAPER)
-    axes.grid(color=QUIET, alpha=0.25, linewidth=0.6)
-    for side in axes.spines.values():
-        side.set_color(QUIET)
-    save(figure, path)
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 PICTURES = {"script1": "figure6a.png", "script2": "figure6b.png"}
@@ -150,7 +116,7 @@ class Points:
 
 @dataclass(frozen=True)
 class Panel:
-    """The figures of one panel."""
+    """The figures of one panel, and the sub-graphs of the annotated place setting."""
 
     script: str
     subgraphs: int
@@ -160,10 +126,11 @@ class Panel:
     variants_rho_facts: Spread
     accuracy: dict[str, Spread]
     variants_accuracy: dict[str, Spread]
+    points: Points
 
 
-@dataclass(frozen=True)
-class Figure6:
+@dataclass(frozen=True, repr=False)
+class Figure6(Answer):
     """Both panels, and the folder of the pictures."""
 
     a: Panel
@@ -173,26 +140,66 @@ class Figure6:
     seed: int
     pictures: tuple[str, ...]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return all fields as JSON types.
+    def summary(self) -> str:
+        """Return Spearman's correlation of the graph similarity with the share named right, for both panels."""
+        found = f"ρ {self.a.rho_similarity:.2f} and {self.b.rho_similarity:.2f}"
+        return f"{count(self.variants, 'variant')}, {count(self.orders, 'node order')}: {found}"
 
-        Returns
-        -------
-        dict
-            Value by name of the field; those of the panels are nested.
-        """
-        return asdict(self)
 
-    def lines(self) -> list[str]:
-        """Return the lines of the text report.
+def figure6_to_dict(found: Figure6) -> dict[str, Any]:
+    """Return the figures as plain data, without the single sub-graphs.
 
-        Returns
-        -------
-        list of str
-            The setting of the run, the figures of both panels, and the files of the pictures.
-        """
-        head = [f"Figure 6: {self.variants} variants, {self.orders} node orders, seed {self.seed}", ""]
-        return [*head, *_panel_lines("(a)", self.a), "", *_panel_lines("(b)", self.b), "", *self.pictures]
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    dict
+        Value by name of the field; those of the panels are nested.
+    """
+    data = asdict(found)
+    for panel in (data["a"], data["b"]):
+        del panel["points"]
+    return data
+
+
+def figure6_lines(found: Figure6) -> list[str]:
+    """Return the lines of the text report.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    list of str
+        The setting of the run, the figures of both panels, and the files of the pictures.
+    """
+    orders = count(found.orders, "node order")
+    head = [f"Figure 6: {count(found.variants, 'variant')}, {orders}, seed {found.seed}", ""]
+    return [*head, *_panel_lines("(a)", found.a), "", *_panel_lines("(b)", found.b), "", *found.pictures]
+
+
+def figure6_rows(found: Figure6) -> Iterator[dict[str, Any]]:
+    """Yield a row for each accuracy of each panel.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Yields
+    ------
+    dict
+        ``panel``, ``script``, ``scene`` (annotated or variants), ``measure``, and its mean, median and percentiles.
+    """
+    for name, panel in (("a", found.a), ("b", found.b)):
+        for scene, accuracy in (("annotated", panel.accuracy), ("variants", panel.variants_accuracy)):
+            for measure, spread in accuracy.items():
+                yield {"panel": name, "script": panel.script, "scene": scene, "measure": measure, **asdict(spread)}
 
 
 def _panel_lines(name: str, panel: Panel) -> list[str]:
@@ -208,7 +215,69 @@ def _panel_lines(name: str, panel: Panel) -> list[str]:
     return lines
 
 
-def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figure6:
+def figure6_figure(found: Figure6, axes: Axes | None = None) -> Figure:
+    """Draw both panels side by side: the graph similarity of each sub-graph against the share of objects named right.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+    axes
+        Axes for panel (a) alone; None for a new figure with both panels.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    if axes is not None:
+        _draw_panel(axes, "(a)", found.a)
+        return axes.figure.figure
+    figure, both = new_figure(12.4, 4.4, ncols=2)
+    for place, name, panel in zip(both, ("(a)", "(b)"), (found.a, found.b), strict=True):
+        _draw_panel(place, name, panel)
+    return figure
+
+
+def _draw_panel(axes: Axes, name: str, panel: Panel) -> None:
+    """Draw one point for each sub-graph of the annotated place setting, coloured by satisfied facts."""
+    points = panel.points
+    drawn = axes.scatter(
+        points.similarity, points.right, c=points.facts, cmap="viridis", s=18, alpha=0.75, linewidths=0
+    )
+    bar = axes.figure.figure.colorbar(drawn, ax=axes, pad=0.02)
+    bar.set_label("satisfied facts (sum of degrees)", color=INK, fontsize=9)
+    bar.outline.set_edgecolor(QUIET)
+    axes.set_xlabel("overall graph similarity", color=INK, fontsize=9)
+    axes.set_ylabel("share of objects named right\n(mean over node orders)", color=INK, fontsize=9)
+    title = f"{name} {panel.script}: {panel.subgraphs} sub-graphs, Spearman's ρ = {panel.rho_similarity:.2f}"
+    axes.set_title(title, color=INK, fontsize=11, loc="left")
+    axes.set_ylim(-0.03, 1.03)
+    axes.set_facecolor(PAPER)
+    axes.grid(color=QUIET, alpha=0.25, linewidth=0.6)
+    for side in axes.spines.values():
+        side.set_color(QUIET)
+
+
+def steps(variants: int) -> int:
+    """Return how many place settings both panels are tried on.
+
+    Parameters
+    ----------
+    variants
+        The number of generated variants of the place setting.
+
+    Returns
+    -------
+    int
+        Number of calls of ``tick`` in :func:`run`.
+    """
+    return len(PICTURES) * (1 + variants)
+
+
+def run(
+    out: Path, variants: int = 50, orders: int = 200, seed: int = 1, tick: Callable[[], None] = lambda: None
+) -> Figure6:
     """Run both panels and write ``figure6a.png`` and ``figure6b.png`` to ``out``.
 
     Parameters
@@ -221,6 +290,8 @@ def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figu
         The number of random node orders of each accuracy.
     seed
         The seed of the variants and of the node orders.
+    tick
+        Function that is called after each place setting.
 
     Returns
     -------
@@ -233,8 +304,11 @@ def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figu
     pictures: list[str] = []
     for script, path in paths.items():
         trial = _Trial(script, np.random.default_rng(seed))
-        points, accuracy = trial.run(annotated, orders)
-        varied = [trial.run(scene, max(orders // 10, 1)) for scene in scenes]
+        tried = []
+        for number, scene in enumerate([annotated, *scenes]):
+            tried.append(trial.run(scene, orders if number == 0 else max(orders // 10, 1)))
+            tick()
+        (points, accuracy), *varied = tried
         panel = Panel(
             script=trial.name,
             subgraphs=len(points.right),
@@ -246,10 +320,12 @@ def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figu
             variants_accuracy={
                 what: Spread.of(np.concatenate([found[what] for _, found in varied])) for what in accuracy
             },
+            points=points,
         )
         panels.append(panel)
-        letter = path.stem[-1]
-        plot_points(points, path, f"({letter}) {script}: {len(points.right)} sub-graphs", panel.rho_similarity)
+        figure, axes = new_figure(6.4, 4.4)
+        _draw_panel(axes, f"({path.stem[-1]})", panel)
+        save(figure, path)
         pictures.append(str(path))
     return Figure6(panels[0], panels[1], variants, orders, seed, tuple(pictures))
 

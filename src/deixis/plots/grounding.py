@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.patches import Rectangle
 
     from deixis.ontology.lessons.types import Match
+    from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.robot.looking import Look
     from deixis.robot.robot import Told
     from deixis.workflows.knowledge.learn import Learned
@@ -53,6 +54,9 @@ LEAST_ALPHA = 0.2
 
 MAX_CLEAR_ARROWS = 30
 """Maximum number of arrows of violated facts that names avoid."""
+
+LEAST_SHOWN = 0.005
+"""Minimum probability at which an alternative is named in a picture: 0.01 with two digits."""
 
 WAY_BEND = 0.25
 """Bend of the way of a misplaced object to its place, as a share of its length."""
@@ -190,6 +194,44 @@ def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
     named = {thing.id: thing.label for thing in scene.objects if thing.label}
     _draw_boxes(axes, scene, named, {}, NO_MARKS, {})
     _finish(figure, axes, scene, named, (), None)
+    return figure
+
+
+def reference_figure(found: Reference, axes: Axes | None = None) -> Figure:
+    """Draw the scene of a description: the object that is meant, and its alternatives, with their probabilities.
+
+    A decided object is coloured. The edges of improbable objects fade; objects that the description excludes are grey.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis refer``.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+
+    Raises
+    ------
+    DeixisError
+        If the description refers to no object.
+    """
+    if not isinstance(found.scene, Scene) or found.target is None:
+        raise DeixisError(f"'{found.text}': there is no object to draw; to_text() says why")
+    listed = [(id, probability) for id, probability in found.alternatives if probability >= LEAST_SHOWN]
+    likely = {found.target: found.probability, **dict(listed)}
+    labels = {}
+    for thing in found.scene.objects:
+        if thing.id in likely:
+            name = f"{thing.label} ({thing.id})" if thing.label else thing.id
+            labels[thing.id] = f"{name} {probability_text(likely[thing.id])}"
+    figure, axes = canvas(axes, WIDTH, _table_height(found.scene) + 0.9)
+    meant = {labels[found.target]: BELONGS} if found.decided else {}
+    _draw_boxes(axes, found.scene, labels, meant, NO_MARKS, likely)
+    _finish(figure, axes, found.scene, labels, (), f"“{found.text}”")
     return figure
 
 

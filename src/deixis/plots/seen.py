@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.errors import DeixisError
 from deixis.perception.detection.settings import PlaneSettings
+from deixis.perception.tracking.situation import scene_of
 from deixis.plots.arrows import directions, draw_directions, points_along
 from deixis.plots.camera import MARGIN, CameraPicture, camera_of, colours_of, draw_camera
 from deixis.plots.figure import INK, canvas, dress_table, new_figure, save
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Detected, PerceivedObject, Scene
     from deixis.workflows.scenes.simulate import Simulation
+    from deixis.workflows.scenes.track import Tracking
 
 MAX_POINTS = 60_000
 """Maximum number of points to draw of the things, and of the table."""
@@ -110,6 +113,31 @@ def simulation_figure(found: Simulation, axes: Axes | None = None) -> Figure:
         The figure.
     """
     return scene_figure(found.truth, axes)
+
+
+def tracking_figure(found: Tracking, axes: Axes | None = None) -> Figure:
+    """Draw the things that are there at the end of a stream of clouds, from above.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis track``.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+
+    Raises
+    ------
+    DeixisError
+        If no thing is there.
+    """
+    if not found.things:
+        raise DeixisError("there is no tracked thing to draw; to_text() says what was seen")
+    return scene_figure(scene_of(found.things, found.seconds), axes)
 
 
 def perceived_figure(scene: Scene) -> Figure:

@@ -58,6 +58,7 @@ RENDERERS = {
         "report.descriptions.refer:reference_to_dict",
         "report.descriptions.refer:reference_lines",
         "report.descriptions.refer:reference_rows",
+        "plots.grounding:reference_figure",
     ),
     "Check": Renderer(
         "report.json_answers:check_to_dict",
@@ -128,6 +129,7 @@ RENDERERS = {
         "report.grounding.retrieve:retrieval_to_dict",
         "report.grounding.retrieve:retrieval_lines",
         "report.knowledge.rows:retrieval_rows",
+        "plots.charts:retrieval_figure",
     ),
     "Learned": Renderer(
         "report.json_answers:learned_to_dict",
@@ -139,6 +141,11 @@ RENDERERS = {
         "report.descriptions.relation:learned_words_to_dict",
         "report.descriptions.relation:learned_words_lines",
         "report.descriptions.relation:learned_words_rows",
+    ),
+    "Meaning": Renderer(
+        "report.descriptions.relation:meaning_to_dict",
+        "report.descriptions.relation:meaning_lines",
+        "report.descriptions.relation:meaning_rows",
     ),
     "LearnedReference": Renderer(
         "report.descriptions.relation:learned_reference_to_dict",
@@ -167,6 +174,7 @@ RENDERERS = {
         "report.scenes.track:tracking_to_dict",
         "report.scenes.track:tracking_lines",
         "report.scenes.track:tracking_rows",
+        "plots.seen:tracking_figure",
     ),
     "Taught": Renderer("report.scenes.seen:taught_to_dict", "report.scenes.seen:taught_lines"),
     "LayoutConcept": Renderer(
@@ -209,6 +217,30 @@ RENDERERS = {
         "report.reasoning.time:chronology_to_dict",
         "report.reasoning.time:chronology_lines",
         "report.reasoning.time:chronology_rows",
+        "plots.charts:chronology_figure",
+    ),
+    "Figure6": Renderer(
+        "experiments.figure6:figure6_to_dict",
+        "experiments.figure6:figure6_lines",
+        "experiments.figure6:figure6_rows",
+        "experiments.figure6:figure6_figure",
+    ),
+    "Scoreboard": Renderer(
+        "experiments.scoreboard.report:to_dict",
+        "experiments.scoreboard.report:lines",
+        "experiments.scoreboard.report:rows",
+        "experiments.scoreboard.plot:scoreboard_figure",
+    ),
+    "OpenEnded": Renderer(
+        "experiments.open_ended.report:to_dict",
+        "experiments.open_ended.report:lines",
+        "experiments.open_ended.report:rows",
+        "experiments.open_ended.plot:open_ended_figure",
+    ),
+    "Apprentice": Renderer(
+        "experiments.apprentice.report:to_dict",
+        "experiments.apprentice.report:lines",
+        "experiments.apprentice.report:rows",
     ),
     "Related": Renderer(
         "report.scenes.relate:related_to_dict", "report.scenes.relate:pair_lines", "report.scenes.relate:related_rows"

@@ -23,16 +23,13 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.expected import ExpectedObject, Standing
 from deixis.robot.modules import Board, Module
-from deixis.workflows.knowledge.recall import AT, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
+from deixis.workflows.knowledge.recall import AT, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
 
 LAYOUT, FAULT = "layout", "fault"
 """Predicates: the layout of the table, and a mistake on it."""
 
 UNNAMED, NAMELESS = "unnamed", "nameless"
 """Predicates of tables whose layout has no name: the scene, and that a person gave no name for it."""
-
-CALLED, NOT_CALLED = "called", "notCalled"
-"""Predicates of the names that a person gives to a tracked thing, and of those that the person denies."""
 
 SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""

@@ -24,6 +24,7 @@ from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import OrientedBox, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
+from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.evidence.properties.candidates import candidate_ratios
@@ -45,7 +46,7 @@ MIN_TURN_OUTLIERS = 1e-4
 """Minimum share of things that lie at any angle without a mistake. It is a tenth with no table seen, and a tenth of
 that with each further one."""
 
-OBSERVED_WEIGHT = 0.5
+OBSERVED_WEIGHT = 0.25
 """Factor of the evidence of relations that were seen but not stated, as those of different pairs depend on each other.
 """
 
@@ -62,6 +63,9 @@ MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
 
 MAX_SLENDER_WIDTH, MAX_SLENDERNESS = 0.02, 2.5
 """Width in metres below which a thing cannot stand if it is higher than ``MAX_SLENDERNESS`` times its width."""
+
+MAX_KNOB = 0.03
+"""Largest extent in metres of a knob, a piece on the top of another thing."""
 
 SIZE_DEVIATIONS, SIZE_PRIOR = (0.15, 0.15, 0.15), 2.0
 """Prior standard deviations of the logarithms of length, width and height, and the number of things they count as."""
@@ -154,6 +158,25 @@ class LearnedLayout:
         """
         fuller = max((self.script, script), key=_fullness)
         return LearnedLayout(self.name, fuller, self.experience + seen)
+
+    def contradiction(self, script: Script) -> str | None:
+        """Return why the description and another one of the layout cannot both hold.
+
+        Parameters
+        ----------
+        script
+            The other description.
+
+        Returns
+        -------
+        str or None
+            The reason with the facts; None if both can hold.
+        """
+        facts = [fact for one in (self.script, script) for fact in one.graph().facts() if fact.weight >= 1]
+        names = sorted({name for fact in facts for name in (fact.subject, fact.object)})
+        implied = Implications(RelationGraph.from_facts(self.graph.vocabulary, names, dict.fromkeys(facts)))
+        conflict = None if implied.consistent else find_conflict(implied)
+        return None if conflict is None else f"{conflict.reason} ({', '.join(map(str, conflict.facts))})"
 
     @cached_property
     def graph(self) -> RelationGraph:
@@ -372,17 +395,13 @@ def _fullness(script: Script) -> tuple[int, int, str]:
 def _pieces(boxes: Array) -> NDArray[np.bool_]:
     """Return which boxes are probably pieces of other things.
 
-    A piece lies mostly within another box in plan without rising above it, or it floats above the table and nothing
-    supports it, or it is too slender to stand.
+    A piece lies mostly within another box in plan without rising above it, or mostly within its volume, or it floats
+    above the table and nothing supports it, or it is too slender to stand, or it is a knob on another thing.
     """
     low, high = boxes[:, 0], boxes[:, 1]
     area = np.prod(high[:, :2] - low[:, :2], axis=1)
-    shared = np.prod(
-        np.clip(
-            np.minimum(high[:, None, :2], high[None, :, :2]) - np.maximum(low[:, None, :2], low[None, :, :2]), 0, None
-        ),
-        axis=2,
-    )
+    common = np.clip(np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None]), 0, None)
+    shared = np.prod(common[:, :, :2], axis=2)
     within = (shared >= PIECE_SHARE * area[:, None]) & (area[:, None] < area[None, :])
     flat = high[:, None, 2] <= high[None, :, 2] + PIECE_HEIGHT
     under = (shared > 0) & (np.abs(low[:, None, 2] - high[None, :, 2]) < SUPPORT_ERROR)
@@ -391,7 +410,10 @@ def _pieces(boxes: Array) -> NDArray[np.bool_]:
     size = high - low
     width = size[:, :2].min(axis=1)
     slender = (width < MAX_SLENDER_WIDTH) & (size[:, 2] > MAX_SLENDERNESS * width)
-    found: NDArray[np.bool_] = (within & flat).any(axis=1) | floats | slender
+    inside = np.prod(common, axis=2) >= PIECE_SHARE * np.prod(size, axis=1)[:, None]
+    np.fill_diagonal(inside, False)
+    knob = (size.max(axis=1) < MAX_KNOB) & under.any(axis=1)
+    found: NDArray[np.bool_] = (within & flat).any(axis=1) | inside.any(axis=1) | floats | slender | knob
     return found
 
 

@@ -20,6 +20,7 @@ from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.format import format_script
 from deixis.grammar.script import Script
 from deixis.learning.layouts.experience import Experience
+from deixis.learning.lessons.lesson import layout_name
 from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
 from deixis.memory.episodes.fluents.changes import Change
@@ -72,6 +73,9 @@ class RobotError(DeixisError, ValueError):
 class Told(Answer):
     """Result of describing a layout: the lesson, what the session learned, the known roles, and those that wait.
 
+    ``contradiction`` is the reason why the description and an earlier one of the layout cannot both hold; None if they
+    can. Both count: ``show`` prints on how many tables each statement held.
+
     Examples
     --------
     >>> import tempfile
@@ -85,12 +89,14 @@ class Told(Answer):
 
     lesson: TableLesson
     learned: Learned
+    contradiction: str | None = None
 
     def summary(self) -> str:
         """Return the layout, its lesson, and the numbers of roles that are known and that wait."""
         waiting = f", {len(self.waiting)} waiting" if self.waiting else ""
         known = share(len(self.taught), len(self.taught) + len(self.waiting), "role")
-        return f"'{self.lesson.layout}' as lesson {self.lesson.id}: {known} known{waiting}"
+        doubt = "" if self.contradiction is None else f"; contradicts an earlier description: {self.contradiction}"
+        return f"'{self.lesson.layout}' as lesson {self.lesson.id}: {known} known{waiting}{doubt}"
 
     @property
     def taught(self) -> tuple[str, ...]:
@@ -117,8 +123,9 @@ class Robot(Closing):
 
     Notes
     -----
-    A robot is closed when its ``with`` block ends. Things are identified by their ids in the present scene. Times are
-    in seconds since the origin of the blackboard; None is the present. Only one thread at a time may call a method.
+    A robot is closed when its ``with`` block ends; a later call raises MemoryFormatError. Things are identified by
+    their ids in the present scene. Times are in seconds since the origin of the blackboard; None is the present. Only
+    one thread at a time may call a method.
 
     Examples
     --------
@@ -206,9 +213,13 @@ class Robot(Closing):
             self._remember_unnamed()
         return self._diary
 
+    def _require_open(self) -> None:
+        """Raise MemoryFormatError if the robot is closed."""
+        self.session.knowledge_store.require_usable()
+
     def _time(self, at: float | None) -> float:
         """Return a time in seconds, the present for None; raise an error unless it is finite and the robot open."""
-        self.session.knowledge_store.require_usable()
+        self._require_open()
         if at is not None and not math.isfinite(at):
             raise RobotError(f"`at` must be a finite number of seconds, got {at}")
         return self.diary.board.seconds() if at is None else at
@@ -311,7 +322,8 @@ class Robot(Closing):
         SceneError
             If it is not a scene.
         RobotError
-            If the boxes of the scene have no heights.
+            If the boxes of the scene have no heights, or the time is before that of the last scene. Nothing changes
+            then.
         """
         from deixis.workflows.layouts.read import as_scene
 
@@ -319,6 +331,10 @@ class Robot(Closing):
         if scene.objects and len(scene.objects[0].minimum) < 3:
             raise RobotError("`scene` must have boxes with heights, in metres, as perceive() makes them")
         seen_at = self._time(at)
+        if self._scene is not None and seen_at < self._seen_at:
+            if at is not None:
+                raise RobotError(f"`at` must not be before the last scene at {self._seen_at:g} s, got {at:g} s")
+            seen_at = self._seen_at
         if self._fullest is not None and not is_same_table(self._fullest, scene):
             self._keep_unnamed(self._fullest)
             self._fullest = None
@@ -342,7 +358,7 @@ class Robot(Closing):
         """
         now = self._time(at)
         if self._scene is not None:
-            self._look_for_expected(now, watched=True)
+            self._look_for_expected(max(now, self._seen_at), watched=True)
 
     def _keep_unnamed(self, scene: Scene) -> None:
         """Keep a table with those that are alike, if no layout explains it and no person described it."""
@@ -382,6 +398,7 @@ class Robot(Closing):
         TableKnowledge
             The recogniser, the layouts, words and sizes.
         """
+        self._require_open()
         if self._knowledge is None:
             frame = self._scene.frame if self._scene is not None else "table"
             known = self.session.view_store.known(frame)
@@ -397,6 +414,7 @@ class Robot(Closing):
         Look
             The probable layouts, the names of the things, and the mistakes.
         """
+        self._require_open()
         if self._look is None:
             self._look = self.knowledge().look(self.scene, self._names_shown())
             self._conclude(self._look)
@@ -461,6 +479,7 @@ class Robot(Closing):
         RobotError
             If there is no layout of that name.
         """
+        self._require_open()
         if layout is not None and layout not in self.layouts:
             known = ", ".join(sorted(self.layouts)) or "none"
             raise RobotError(f"`layout` must be a layout that the robot knows, got '{layout}'; there are: {known}")
@@ -559,19 +578,23 @@ class Robot(Closing):
         """
         if isinstance(text, str) and not text.strip():
             raise RobotError("`text` must describe a layout, got a blank text; describe how the table is laid")
+        if isinstance(text, str) and text.rstrip().endswith("?"):
+            raise RobotError("`text` must describe a layout or objects, got a question; ask `session.recall`")
         if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
             return self._expect_objects(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
         seen = self.knowledge().recognised(self.scene)
         words = text if isinstance(text, str) else script.reading.text if script.reading else format_script(script)
         now, event = self._time(at), self.diary.event(event, "sentence")
+        earlier = self.layouts.get(layout_name(script))
         with self.diary.collected() as changes:
             self.diary.heard(words, by, now, event)
         learned = self.session.learn(
             script, seen, teacher=by, events=() if event is None else (event,), episodes=lambda _: self._part(changes)
         )
         self._known_at = max(self._known_at, now)
-        return Told(self._learned(script, self.scene, learned), learned)
+        contradiction = None if earlier is None else earlier.contradiction(script)
+        return Told(self._learned(script, self.scene, learned), learned, contradiction)
 
     def _layout(self, text: str) -> Script:
         """Return the layout that a text describes, with the name that the text gives it."""
@@ -708,6 +731,7 @@ class Robot(Closing):
         Consolidation
             The lessons, and the reasons why other experiences taught nothing.
         """
+        self._require_open()
         return consolidate(self.diary.board, _RobotLearner(self), RobotModule.name, self._keep_unnamed)
 
     # ---- what waits
@@ -715,6 +739,7 @@ class Robot(Closing):
     @property
     def questions(self) -> tuple[Question, ...]:
         """Questions about the present table whose information is worth their cost, the most informative first."""
+        self._require_open()
         questions = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
         informative = [question for question in questions if question.gain > QUESTION_COST]
         return tuple(sorted(informative, key=lambda question: -question.gain))
@@ -722,6 +747,7 @@ class Robot(Closing):
     @property
     def layout_question(self) -> LayoutQuestion | None:
         """Question for the name of a layout that came up several times without a name; None if there is no question."""
+        self._require_open()
         found = None if self._scene is None else self._kind(self._scene)
         if found is None or len(found[1].tables) < MIN_TABLES or found[1].asked:
             return None
@@ -773,6 +799,7 @@ class Robot(Closing):
         >>> robot.close()
         >>> folder.cleanup()
         """
+        self._require_open()
         kind = question.kind
         kept = [table.kept for table in kind.tables if table.kept is not None]
         index = next((n for n, known in enumerate(self.unnamed) if known.layout.script is kind.layout.script), None)
@@ -836,6 +863,7 @@ class Robot(Closing):
         >>> robot.close()
         >>> folder.cleanup()
         """
+        self._require_open()
         lesson = self.lessons[question.lesson]
         if question.role not in lesson.waiting:
             raise RobotError(f"`question` must be about a role that still waits, and '{question.role}' does not")
@@ -859,6 +887,7 @@ class Robot(Closing):
         tuple of tuple
             Number of the lesson and name of the role, for each view that was learned.
         """
+        self._require_open()
         done = []
         for number in range(len(self.lessons)):
             lesson = self.lessons[number]

@@ -1,6 +1,7 @@
 """Expectation blocks: comments at the end of a ``.layout`` file that say what must be true of it.
 
-A block starts with the comment ``# expect:``; each comment line after it is one expectation::
+A block starts with the comment ``# expect:``; the rest of its line, and each comment line after it, is one
+expectation::
 
     # expect:
     #   consistent
@@ -27,7 +28,7 @@ from deixis.errors import DeixisError
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
 
-START = re.compile(r"^\s*#\s*expect:\s*$", re.MULTILINE)
+START = re.compile(r"^[ \t]*#[ \t]*expect:", re.MULTILINE)
 
 
 class ExpectationError(DeixisError, ValueError):
@@ -65,8 +66,8 @@ def expectations_in(text: str, file: str) -> Iterator[Expectation]:
     start = START.search(text)
     if start is None:
         return
-    first = text.count("\n", 0, start.end()) + 2
-    for line, content in enumerate(text[start.end() :].split("\n")[1:], start=first):
+    first = text.count("\n", 0, start.end()) + 1
+    for line, content in enumerate(f"#{text[start.end() :]}".split("\n"), start=first):
         comment = content.strip()
         if not comment:
             continue

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from answers import assert_is_answer
 from schemas import errors_in
 
 from deixis.examples_data import example
@@ -17,6 +18,7 @@ from deixis.experiments.apprentice.tables import lay_tampered
 from deixis.grammar.read import read_script_file
 from deixis.grammar.script import Script
 from deixis.reasoning.comparison.explanation import MistakeKind
+from deixis.report.renderers import to_rows
 
 TINY = ApprenticePlan(tables=1, seed=3, first_tables=1, layouts=("childs_place",), processes=1)
 
@@ -37,6 +39,12 @@ def test_small_run_reports_valid_json_and_intervals(found: Apprentice) -> None:
     assert answer["first_tables"] == 1
     assert answer["counts"]["layouts_right"]["of"] == 1
     assert "interval of 95 %" in "\n".join(lines(found))
+
+
+def test_the_result_is_an_answer(found: Apprentice) -> None:
+    assert_is_answer(found)
+    shares = {row["figure"]: row["share"] for row in to_rows(found)}
+    assert shares["layouts_right"] == found.to_dict()["layouts_right"]
 
 
 def test_words_teach_new_things_of_the_first_table(found: Apprentice) -> None:

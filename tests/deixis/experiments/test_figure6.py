@@ -7,16 +7,18 @@ import json
 import sys
 from contextlib import redirect_stdout
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from answers import assert_is_answer
 from schemas import errors_in
 from stored_pictures import assert_as_stored
 
 from deixis.cli.app import main
-from deixis.experiments.figure6 import Figure6, Points, Spread, run
+from deixis.experiments.figure6 import Figure6, Points, Spread, run, steps
+from deixis.report.renderers import to_rows
 
 CHOICES = ("facts decide", "similarity decides")
 RIGHT = {f"{what}, {choice}" for what in ("right", "right up to interchangeability") for choice in CHOICES}
@@ -71,26 +73,38 @@ def test_the_pictures_are_written(result: Figure6) -> None:
 def test_the_command_prints_the_same_figures_for_the_same_seed(result: Figure6, tmp_path: Path) -> None:
     out = io.StringIO()
     argv = f"deixis experiment figure6 --variants 1 --orders 3 --seed 1 --json --out {tmp_path}".split()
-    shares: list[NDArray[np.float64]] = []
-
-    def kept(points: Points, *_: object) -> None:
-        shares.append(points.right)
-
-    plot = patch("deixis.experiments.figure6.plot_points", kept)
-    with patch.object(sys, "argv", argv), redirect_stdout(out), plot, pytest.raises(SystemExit) as end:
+    with patch.object(sys, "argv", argv), redirect_stdout(out), pytest.raises(SystemExit) as end:
         main()
     data, expected = json.loads(out.getvalue()), json.loads(json.dumps(result.to_dict(), allow_nan=False))
     assert errors_in("figure6", data) == []
     assert not end.value.code
     assert data.pop("pictures") != expected.pop("pictures")
     assert data == expected
-    assert [len(points) for points in shares] == [result.a.subgraphs, result.b.subgraphs]
-    assert all(((points >= 0) & (points <= 1)).all() for points in shares)
+
+
+def test_each_sub_graph_is_a_point(result: Figure6) -> None:
+    for panel in (result.a, result.b):
+        assert len(panel.points.right) == panel.subgraphs
+        assert ((panel.points.right >= 0) & (panel.points.right <= 1)).all()
+
+
+def test_the_result_is_an_answer(result: Figure6) -> None:
+    assert_is_answer(result)
+    assert repr(result).startswith("<Figure6 1 variant, 3 node orders: ρ 0.")
+    assert {row["panel"] for row in to_rows(result)} == {"a", "b"}
+    assert "points" not in result.to_dict()["a"]
+
+
+def test_each_place_setting_is_counted() -> None:
+    ticks: list[int] = []
+    with patch("deixis.experiments.figure6.SIZES", range(4, 6)), TemporaryDirectory() as folder:
+        run(Path(folder), variants=1, orders=1, tick=lambda: ticks.append(1))
+    assert len(ticks) == steps(1) == 4
 
 
 def test_the_text(result: Figure6) -> None:
-    lines = result.lines()
-    assert lines[0] == "Figure 6: 1 variants, 3 node orders, seed 1"
+    lines = result.to_text().splitlines()
+    assert lines[0] == "Figure 6: 1 variant, 3 node orders, seed 1"
     assert sum("Spearman's rho" in line for line in lines) == 2
     assert lines[-2:] == list(result.pictures)
 

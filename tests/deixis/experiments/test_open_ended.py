@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from answers import assert_is_answer
 from commands import deixis
 from schemas import errors_in
 from stored_pictures import assert_as_stored
@@ -35,6 +36,7 @@ from deixis.perception.recognition.learners.teaching import Course, End, TaughtA
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 from deixis.perception.recognition.settings import DEFAULT, PAPER
 from deixis.perception.simulator.meshes.tableware import FORMS, make
+from deixis.report.renderers import to_rows
 
 TINY = OpenEndedPlan(orders=2, instances=5, views=2, asked=2, kinds=("Plate", "Fork", "Mug"))
 
@@ -212,6 +214,11 @@ def test_the_report_fits_the_page_and_names_seeds_and_skipped(found: OpenEnded) 
     assert errors_in("open_ended", data) == []
     assert data["seeds"] == [1, 2] and len(data["sets"][0]["courses"]) == 4
     assert 0.0 <= data["sets"][0]["courses"][0]["GCA"] <= 1.0
+
+
+def test_the_result_is_an_answer(found: OpenEnded) -> None:
+    assert_is_answer(found)
+    assert [row["learner"] for row in to_rows(found)] == [one.contestant for one in found.findings[0].taught]
 
 
 def test_the_picture_is_drawn(found: OpenEnded, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from answers import assert_is_answer
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from schemas import errors_in
@@ -32,6 +33,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.report.renderers import to_rows
 
 TINY = ScoreboardPlan(
     cases=1,
@@ -222,6 +224,12 @@ def test_limits_use_the_tables_of_the_board(tiny: Scoreboard) -> None:
         assert one.incomplete == 0
         assert one.right.mean == tiny.main.mean(DEFAULT, one.setting, "right").mean
         assert one.short.mean == pytest.approx(one.words.mean - one.right.mean)
+
+
+def test_the_result_is_an_answer(tiny: Scoreboard) -> None:
+    assert_is_answer(tiny)
+    row = next(row for row in to_rows(tiny) if row["engine"] == DEFAULT)
+    assert 0 <= row["right"] <= row["grouped"] <= 1
 
 
 def test_the_chart_is_as_stored(tiny: Scoreboard, tmp_path: Path) -> None:

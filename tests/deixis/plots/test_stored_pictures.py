@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -121,6 +122,18 @@ def story(path: Path) -> None:
     write_moments([first, last], path)
 
 
+def doubtful_reference() -> Figure:
+    return deixis.refer("the chair", EXAMPLES / "study.scene.json").plot()
+
+
+def chronology() -> Figure:
+    return replace(deixis.chronology(EXAMPLES / "serving.fluents.json"), file="serving.fluents.json").plot()
+
+
+def retrieval() -> Figure:
+    return deixis.retrieve(scene(), EXAMPLES, least=0.6).plot()
+
+
 PICTURES: list[Callable[[], Figure]] = [
     decided_grounding,
     doubtful_grounding,
@@ -131,6 +144,9 @@ PICTURES: list[Callable[[], Figure]] = [
     perceived_table,
     recognised_table,
     looked_at_table,
+    doubtful_reference,
+    chronology,
+    retrieval,
 ]
 
 

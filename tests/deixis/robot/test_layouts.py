@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from deixis.learning.layouts.experience import Experience, Moments, log_sizes, long_axis, predictive
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import OrientedBox, PerceivedObject
-from deixis.robot.layouts import LearnedLayout, angle_between
+from deixis.robot.layouts import LearnedLayout, _pieces, angle_between
 from deixis.workflows.layouts.read import read_script
 
 ROLES = ("fork", "knife", "plate")
@@ -82,6 +82,13 @@ def test_height_counts_from_what_lies_below() -> None:
     napkin = PerceivedObject("napkin", (0.05, 0.05, 0.02), (0.15, 0.15, 0.03))
     heights = np.exp(log_sizes([low, plate, napkin])[:, 2]) - 0.01
     assert heights == pytest.approx([0.044, 0.02, 0.01])
+
+
+def test_parts_of_things_are_pieces() -> None:
+    jug, half = [(0.0, 0.0, 0.0), (0.07, 0.1, 0.105)], [(-0.01, 0.0, 0.02), (0.07, 0.09, 0.09)]
+    pot, knob = [(0.3, 0.0, 0.0), (0.45, 0.2, 0.12)], [(0.36, 0.09, 0.126), (0.38, 0.11, 0.14)]
+    saucer, cup = [(0.6, 0.0, 0.0), (0.75, 0.15, 0.02)], [(0.63, 0.03, 0.007), (0.72, 0.12, 0.07)]
+    assert _pieces(np.array([jug, half, pot, knob, saucer, cup])).tolist() == [False, True, False, True, False, False]
 
 
 def test_predictions_narrow_as_more_is_seen() -> None:

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import deixis
+from deixis.reasoning.temporal.fluent import Pattern
+from deixis.robot.robot import RobotError, Told
 
 FORK, PLATE, KNIFE, CUP = (0.0, 0.02), (0.06, 0.0), (0.36, 0.02), (0.34, 0.3)
 SIZES = {"fork": (0.03, 0.2), "plate": (0.26, 0.26), "knife": (0.02, 0.22), "cup": (0.09, 0.09)}
@@ -30,6 +32,33 @@ def robot(tmp_path: Path) -> Iterator[deixis.Robot]:
             robot.sees(table(fork=FORK, plate=PLATE, knife=(KNIFE[0] + shift, KNIFE[1]), cup=CUP), at=at)
             robot.told(TEXT, at=at + 0.5)
         yield robot
+
+
+def test_a_contradicting_description_is_reported_and_counts(robot: deixis.Robot) -> None:
+    agreeing = robot.told("layout supper; fork left of plate", at=2.8)
+    assert isinstance(agreeing, Told) and agreeing.to_dict()["contradiction"] is None
+    told = robot.told("layout supper; fork right of plate; knife right of plate; cup above knife", at=3.0)
+    assert isinstance(told, Told)
+    assert told.contradiction == (
+        "'fork' cannot be both left of and right of 'plate' (left(fork, plate), right(fork, plate))"
+    )
+    assert told.contradiction in told.summary() and told.contradiction in told.to_text()
+    assert robot.layouts["supper"].experience.tables == 4
+
+
+def test_a_question_is_not_learned_as_a_description(robot: deixis.Robot) -> None:
+    with pytest.raises(RobotError, match="got a question"):
+        robot.told("Is the fork left of the plate?")
+
+
+def test_a_scene_before_the_last_one_is_refused(robot: deixis.Robot) -> None:
+    before = robot.diary.board.holding()
+    with pytest.raises(RobotError, match=r"`at` must not be before the last scene at 2 s, got 1\.5 s"):
+        robot.sees(table(fork=FORK), at=1.5)
+    assert robot.diary.board.holding() == before
+    robot.sees(table(fork=FORK))  # the present time is that of the blackboard, which began a moment ago
+    finished = [each for each in robot.diary.board.holding(Pattern(predicate="at")) if not each.is_open]
+    assert len(finished) >= 3 and all(each.finish.lower >= 2.0 for each in finished)
 
 
 def test_a_missing_thing_belongs_where_it_was_on_other_tables(robot: deixis.Robot) -> None:
@@ -85,10 +114,26 @@ def test_times_may_be_numbers_of_numpy(robot: deixis.Robot) -> None:
     assert told.lesson.id == "supper-3"
 
 
-def test_a_closed_robot_sees_nothing(tmp_path: Path) -> None:
+def test_a_closed_robot_sees_and_answers_nothing(tmp_path: Path) -> None:
     with deixis.Robot(tmp_path / "memory") as robot:
-        robot.sees(table(fork=FORK, plate=PLATE), at=1.0)
-    for call in (lambda: robot.sees(table(fork=FORK, plate=PLATE), at=2.0), robot.watches):
+        robot.sees(table(fork=FORK, plate=PLATE, knife=KNIFE), at=1.0)
+        robot.told(TEXT, at=2.0)
+        robot.look()
+    for call in (
+        lambda: robot.sees(table(fork=FORK, plate=PLATE), at=2.0),
+        robot.watches,
+        robot.look,
+        robot.names,
+        robot.layout,
+        robot.check,
+        lambda: robot.check("brunch"),
+        robot.knowledge,
+        robot.consolidate,
+        robot.reconsider,
+        robot.remember,
+        lambda: robot.questions,
+        lambda: robot.layout_question,
+    ):
         with pytest.raises(deixis.DeixisError, match="this session is closed"):
             call()
 

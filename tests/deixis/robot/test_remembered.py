@@ -10,8 +10,11 @@ import numpy as np
 
 from deixis.grammar.layout.parser import parse_script
 from deixis.learning.layouts.experience import Experience, Moments, Tally
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.robot import Robot
 from deixis.workflows.knowledge.unlearn import Selection
 
@@ -136,3 +139,17 @@ def test_fuller_description_stays_in_any_order(tmp_path: Path) -> None:
         assert robot.layouts["place"].roles == ("fork", "plate", "knife")
         assert robot.layouts["place"].experience.filled["knife"] == Tally(1.0, 1.0)
         robot.close()
+
+
+def test_a_spoken_name_is_taken_back_with_its_sentence(tmp_path: Path) -> None:
+    with Robot(tmp_path) as robot:
+        robot.sees(table(0, (None, None, None)), at=1.0)
+        for number, (name, spoken) in enumerate((("fork", "This is a fork."), ("knife", "This is a knife."))):
+            source = Source(Origin.SAID, "Ada", f"words {number}")
+            said = episodic(f"w{number}", ("Ada", "said", spoken), start=2.0, finish=2.5, source=source)
+            robot.diary.board.write(Add(said))
+            robot.shown(name, f"o{2 * number}", by="Ada", at=3.0, event=f"words {number}")
+        assert robot.session.categories() == {"fork": 1, "knife": 1}
+        robot.unlearn(Selection(sentence="This is a fork."))
+        assert robot.session.categories() == {"knife": 1}
+        assert {each.source.event for each in robot.diary.board.now(Pattern(predicate="isA"))} == {"words 1"}

@@ -51,6 +51,14 @@ def test_modules_get_changes_in_order_and_keep_to_declarations(tmp_path: Path, p
         assert all("'echo' is failing" in line for line in lines), lines
 
 
+@pytest.mark.parametrize("processes", [False, True], ids=["threads", "processes"])
+def test_module_that_hangs_is_named(processes: bool) -> None:
+    lines: list[str] = []
+    with Blackboard.transient() as board, Runtime(board, [ModuleSpec("robot_modules:Stuck")], processes, lines.append):
+        say(board, "hello")
+        assert until(lambda: lines == ["the subscriber 'stuck' is slow, 1 change behind"]), lines
+
+
 @pytest.mark.kills
 def test_killed_process_goes_on_from_its_position(tmp_path: Path) -> None:
     lines: list[str] = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 
+import numpy  # noqa: F401  (pytester forgets the modules of a run, and NumPy cannot be loaded twice)
 import pytest
 
 from deixis.errors import DeixisError
@@ -73,6 +74,12 @@ def test_expectations_have_the_lines_of_the_file() -> None:
     lines = (LAYOUT + BLOCK).splitlines()
     assert [one.text for one in found] == [lines[one.line - 1].lstrip("# ") for one in found]
     assert found[0] == Expectation(6, "consistent")
+
+
+def test_an_expectation_may_follow_the_word_expect() -> None:
+    text = "fork left of plate\n# expect: consistent\n#   follows left(fork, plate)\n"
+    expected = [Expectation(2, "consistent"), Expectation(3, "follows left(fork, plate)")]
+    assert list(expectations_in(text, "dinner.layout")) == expected
 
 
 @pytest.mark.parametrize(

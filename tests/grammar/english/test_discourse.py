@@ -159,3 +159,184 @@ def test_direction_of_a_tool_is_that_of_its_head(text: str, said: str, claims: l
     assert [str(claim) for claim in script.claims] == claims
     assert script.reading is not None
     assert [stated.content.value for stated in script.reading.stated if isinstance(stated.content, Claim)] == [said]
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        (
+            "Each mat has a spoon to its left and a bowl to its right.",
+            {"left(spoon, mat)", "right(bowl, mat)"},
+        ),
+        (
+            "The tray has a jug on it, a lamp behind it and a towel under it.",
+            {"on(jug, tray)", "behind(lamp, tray)", "under(towel, tray)"},
+        ),
+        ("The jar has nothing in it.", {"none_inside(jar)"}),
+        ("No spoon touches the candle.", {"not touching(spoon, candle)"}),
+    ],
+)
+def test_things_that_a_thing_has_beside_it(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+def test_each_of_a_counted_group_has_its_own_things() -> None:
+    found = asserted("Each of the two mats has a spoon to its left and a bowl on it.")
+    assert {"left(spoon_1, mat_1)", "left(spoon_2, mat_2)", "on(bowl_1, mat_1)", "on(bowl_2, mat_2)"} <= found
+    assert not {"on(bowl_1, spoon_1)", "on(bowl_1, mat_2)"} & found
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Two mugs stand on a coaster each.", "Two mugs are each on a coaster.", "Two mugs each stand on a coaster."],
+)
+def test_floating_each_pairs_the_members(text: str) -> None:
+    found = asserted(text)
+    assert {"on(mug_1, coaster_1)", "on(mug_2, coaster_2)"} <= found
+    assert "on(mug_1, coaster_2)" not in found
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        ("Two of the three jars are behind the box.", {"behind(jar_1, box)", "behind(jar_2, box)"}),
+        ("Half of the four jars are behind the box.", {"behind(jar_1, box)", "behind(jar_2, box)"}),
+        (
+            "One of the three jars is behind the box; the others are in front of it.",
+            {"behind(jar_1, box)", "in_front(jar_2, box)", "in_front(jar_3, box)"},
+        ),
+        (
+            "There are four jars. Two are behind the box, the other two are on a mat.",
+            {"count(jar_1, jar_2, jar_3, jar_4, '4')", "behind(jar_1, box)", "behind(jar_2, box)", "on(jar_3, mat)",
+             "on(jar_4, mat)"},
+        ),
+        (
+            "Two of the jars are red; the third is blue.",
+            {"count(jar_1, jar_2, '2')", "colour(jar_1, 'red')", "colour(jar_2, 'red')", "colour(jar_3, 'blue')"},
+        ),
+        ("At most two jars are behind the box.", set()),
+        ("The jar is at most two centimetres from the box.", {"distance_less(jar, box, 0.02 m)"}),
+    ],
+)  # fmt: skip
+def test_parts_and_bounds_of_groups(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+def test_half_a_dozen_is_six() -> None:
+    assert "count(egg_1, egg_2, egg_3, egg_4, egg_5, egg_6, '6')" in asserted("Half a dozen eggs are in the box.")
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        ("A row of candles is behind the box.", {"row(candles)", "behind(candles, box)"}),
+        (
+            "A circle of two cups surrounds the jar. The circle is on a tray.",
+            {"count(cup_1, cup_2, '2')", "circle(cup_1, cup_2)", "around(cup_1, jar)", "around(cup_2, jar)",
+             "on(cup_1, tray)", "on(cup_2, tray)"},
+        ),
+        ("The pencils form a row.", {"row(pencils)"}),
+        ("The bowls are stacked.", {"stacked(bowls)"}),
+        ("The pencils are lined up.", {"row(pencils)"}),
+        ("The second row of seats is behind the box.", {"behind(row, box)"}),
+    ],
+)  # fmt: skip
+def test_arrangements_are_claims_about_their_things(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        ("The lid is not on the jar but under it, left of the box.",
+         {"not on(lid, jar)", "under(lid, jar)", "left(lid, box)"}),
+        ("The lid isn't behind the jar or the box.", {"not behind(lid, jar)", "not behind(lid, box)"}),
+        ("The pen is outside the case.", {"not inside(pen, case)"}),
+        ("The pen isn't outside the case. The cup is on the mat.", {"on(cup, mat)"}),
+        ("The knife lies outside the spoon. The cup is on the mat.", {"on(cup, mat)"}),
+    ],
+)  # fmt: skip
+def test_scope_of_denials(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        ("There is a lamp and a vase. The former is behind the box, the latter in front of it.",
+         {"behind(lamp, box)", "in_front(vase, box)"}),
+        ("Is the lamp behind the box? No, it is in front of it.", {"in_front(lamp, box)"}),
+        ("There are two cans, a jar and a lamp on the shelf by the door.",
+         {"count(can_1, can_2, '2')", "on(can_1)", "on(can_2)", "on(jar)", "on(lamp)"}),
+        ("There are a lid and a spoon on a saucer.", {"on(spoon, saucer)"}),
+        ("There are two tins. One holds rice. The other holds beans.",
+         {"count(tin_1, tin_2, '2')", "contents(tin_1, 'rice')", "inside(beans, tin_2)"}),
+    ],
+)  # fmt: skip
+def test_antecedents_across_clauses(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+def test_a_condition_with_an_unknown_verb_names_its_subject() -> None:
+    (fact,) = reading("When the alarm beeps, put it behind the box.").stated
+    assert (str(fact.content), fact.asserted) == ("behind(alarm, box)", False)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Seen from the door, the lamp is left of the box.",
+        "From the driver's point of view, the lamp is left of the box.",
+        "From behind the counter, the lamp is left of the box.",
+    ],
+)
+def test_sides_from_another_viewpoint_are_conditional(text: str) -> None:
+    (fact,) = reading(text).stated
+    assert str(fact.content) == "left(lamp, box)"
+    assert fact.condition == text.partition(",")[0]
+
+
+@pytest.mark.parametrize("frame", ["From where I sit", "From my side of the table", "As you look at it"])
+def test_sides_from_the_viewer_are_asserted(frame: str) -> None:
+    assert asserted(f"{frame}, the lamp is left of the box.") == {"left(lamp, box)"}
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        ("There are two lamps: one behind the vase and one in front of it.",
+         {"count(lamp_1, lamp_2, '2')", "behind(lamp_1, vase)", "in_front(lamp_2, vase)"}),
+        ("Two lamps flank the bed: one left of the vase, the other right of it.",
+         {"count(lamp_1, lamp_2, '2')", "each_side(lamp_1, bed)", "each_side(lamp_2, bed)", "left(lamp_1, vase)",
+          "right(lamp_2, vase)"}),
+        ("The salt is next to the oil, both of them behind the pan.",
+         {"next_to(salt, oil)", "behind(salt, pan)", "behind(oil, pan)"}),
+        ("A jar is behind the pan and its lid lies next to it.", {"behind(jar, pan)", "next_to(lid, jar)"}),
+        ("The rightmost jar is behind the pan.", {"rightmost(jar)", "behind(jar, pan)"}),
+        ("The pan is behind the jar, wider than everything else.", {"behind(pan, jar)", "widest(pan)"}),
+        ("The jar is taller than all the others.", {"tallest(jar)"}),
+        ("The jar is as far from the pan as the lid. The lid is on the mat.", {"on(lid, mat)"}),
+        ("The clock is on black's right. The lid is on the mat.", {"on(lid, mat)"}),
+    ],
+)  # fmt: skip
+def test_members_told_apart_and_compared(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+def test_a_sentence_without_facts_has_a_reason() -> None:
+    found = reading("The cup is on the mat. The jar is heavier than the box.")
+    (problem,) = found.sentences[1].problems
+    assert "no relation or property that a fact can state" in problem.message
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ("Das Messer liegt rechts. The cup is on the mat.", "write it in English"),
+        ("The cup is on the mat, and half past.", None),
+    ],
+)
+def test_instructions_are_not_quoted(text: str, hint: str | None) -> None:
+    hints = [problem.hint for sentence in reading(text).sentences for problem in sentence.problems]
+    assert all(one is None or not one.startswith("write 'write") for one in hints)
+    assert hint is None or hint in hints

@@ -125,3 +125,23 @@ def test_the_surface_of_the_header_is_not_an_object() -> None:
     ]
     with pytest.raises(ScriptError, match="is the surface"):
         parse_script("layout on tray; cup left of tray")
+
+
+def test_in_before_a_region_is_a_place() -> None:
+    script = parse_script("pen in cup; lamp in the middle; cup_1, cup_2 in a row; lid not in box")
+    assert [str(fact) for fact in script.facts] == ["inside(pen, cup)", "not inside(lid, box)"]
+    assert [str(claim) for claim in script.claims] == ["middle(lamp)", "row(cup_1, cup_2)"]
+
+
+@pytest.mark.parametrize("statement", ["cup vertically above plate", "cup quite near plate", "another cup near plate"])
+def test_adverbs_and_other_words_end_no_name(statement: str) -> None:
+    with pytest.raises(ScriptError, match="expected a"):
+        parse_script(statement)
+
+
+@pytest.mark.parametrize(
+    ("statement", "name"), [("plum jelly near plate", "plum_jelly"), ("Sally near plate", "Sally")]
+)
+def test_nouns_with_the_ending_of_adverbs_are_names(statement: str, name: str) -> None:
+    (fact,) = parse_script(statement).facts
+    assert fact.subject == name

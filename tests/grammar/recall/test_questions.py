@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.grammar.recall.questions import WORDINGS, RecallQuestionError, read_question
+from deixis.grammar.recall.questions import WORDINGS, RecallQuestionError, is_question, read_question
 
 
 @pytest.mark.parametrize("wording", WORDINGS)
@@ -24,6 +24,13 @@ def test_suggested_wordings_are_understood(wording: str) -> None:
         ("Which spoon was added between noon and 12:30:05?", "come", "spoon", None, None, "between"),
         ("Was the fork in front of the candle at first?", "whether", "fork", "candle", "in_front", "at_first"),
         ("how many glasses are in the sink", "how_many", "glasses", "sink", "inside", "unstated"),
+        ("which of them did I show you last", "shown", "one", None, None, "unstated"),
+        ("Where has the fork been earlier?", "where", "fork", None, None, "before"),
+        ("where was the fork originally?", "where", "fork", None, None, "at_first"),
+        ("what did anyone take away since noon?", "gone", None, None, None, "since"),
+        ("did someone take the cup away since noon?", "whether_did", "cup", None, None, "since"),
+        ("has the cup gone?", "whether_did", "cup", None, None, "unstated"),
+        ("what has left the table since noon?", "gone", None, None, None, "since"),
         ("Please tell me, since when is the island on the island?", "when_held", "island", "island", "on", "unstated"),
     ],
 )
@@ -32,6 +39,21 @@ def test_questions_are_read_with_their_parts(
 ) -> None:
     read = read_question(text)
     assert (read.kind, read.thing, read.other, read.relation, read.when.kind) == (kind, thing, other, relation, when)
+
+
+@pytest.mark.parametrize(
+    ("text", "asks"),
+    [
+        ("Where is the sofa?", True),
+        ("where was the fork before", True),
+        ("please tell me which one did I show you first", True),
+        ("what the fork is left of", False),
+        ("When there is soup, the spoon is right of the plate.", False),
+        ("The fork is left of the plate.", False),
+    ],
+)
+def test_questions_are_told_from_statements(text: str, asks: bool) -> None:
+    assert is_question(text) is asks
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from datetime import UTC, datetime
 
 import pytest
@@ -138,3 +139,22 @@ def test_subjects_of_many_fluents_are_found_in_a_window(monkeypatch: pytest.Monk
         board.write(*(Add(on(f"f{n}", float(n), n + 1.0)) for n in range(9)), by="test")
         assert [each.id for each in board.holding(Pattern("cup"), 4.5, 5.5)] == ["f4", "f5"]
         assert len(board.holding(Pattern("cup"))) == len(board.holding(Pattern(predicate="on"))) == 9
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda board: board.write("cup", by="test"), "a change must be Add"),
+        (lambda board: board.add("cup", by="test"), "a change must be Add"),
+        (lambda board: board.holding("cup"), "`pattern` must be a Pattern"),
+        (lambda board: board.now("cup"), "`pattern` must be a Pattern"),
+        (lambda board: board.holding(Pattern("cup"), "noon"), "the ends of a window must be numbers"),
+        (lambda board: board.subscribe("listener", Pattern("cup"), "print"), "`callback` must be a function"),
+    ],
+    ids=["change", "fluent", "pattern", "pattern of now", "window", "callback"],
+)
+def test_arguments_of_wrong_types_are_refused(call: Callable[[Blackboard], object], message: str) -> None:
+    with Blackboard.transient() as board:
+        with pytest.raises(EpisodeError, match=message):
+            call(board)
+        assert board.sequence == 0 and board.subscribers() == ()

@@ -17,6 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from deixis.answers import Answer, count
 from deixis.ontology.models.relations import (
     FAMILIES,
     GRADED_FAMILIES,
@@ -250,8 +251,8 @@ def shipped_models() -> RelationModels:
     return RelationModels({name: RelationModel(name, terms[name], OUTLIERS, CHANCE[name]) for name in names})
 
 
-@dataclass(frozen=True, eq=False)
-class Meaning:
+@dataclass(frozen=True, eq=False, repr=False)
+class Meaning(Answer):
     """Models of words and sizes, and weights of evidence; by default, the shipped ones.
 
     Attributes
@@ -264,12 +265,33 @@ class Meaning:
         False to read words literally: the exact relation of a pair is the word, implies it, or neither.
     weights
         Factors of labels, sizes and colours.
+
+    Examples
+    --------
+    >>> meaning = Meaning()
+    >>> meaning
+    <Meaning graded words as shipped, usual sizes>
+    >>> meaning.to_text().splitlines()[1]
+    'horizontal       shipped, from prototypes'
     """
 
     models: RelationModels | None = None
     sizes: Mapping[str, SizeModel] = field(default_factory=dict)
     graded: bool = True
     weights: UnaryWeights = field(default_factory=UnaryWeights)
+
+    def summary(self) -> str:
+        """Return how words are read, how many models were learned, and the number of kinds with learned sizes."""
+        learned = [model for model in self.models_in_force.models.values() if model.provenance.made is not None]
+        origin = count(len(learned), "learned model") if learned else "as shipped"
+        words = f"graded words {'with ' if learned else ''}{origin}" if self.graded else "literal words"
+        sizes = f"learned sizes of {count(len(self.sizes), 'kind')}" if self.sizes else "usual sizes"
+        return f"{words}, {sizes}"
+
+    @property
+    def models_in_force(self) -> RelationModels:
+        """Models of the relation words, which are the shipped ones if ``models`` is None."""
+        return self.models or shipped_models()
 
 
 LITERAL = Meaning(graded=False)

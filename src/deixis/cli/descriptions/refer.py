@@ -16,10 +16,13 @@ from deixis.cli.common import (
     AsJson,
     HideLabels,
     Image,
+    Picture,
+    draw_answer,
     note_unit,
     print_json,
     print_line,
     print_lines,
+    require_plot,
 )
 from deixis.cli.output import StandardInput
 from deixis.cli.progress import progress_bar
@@ -74,6 +77,7 @@ def refer(
     memory: Annotated[
         Path | None, typer.Option("--memory", metavar="DIR", help="Use the adjectives that this memory learned.")
     ] = None,
+    plot: Picture = None,
     hide_labels: HideLabels = False,
     image: Image = None,
     as_json: AsJson = False,
@@ -91,6 +95,7 @@ def refer(
             or image is not None
             or attributes
             or picked
+            or plot
             or memory
         ):
             raise typer.BadParameter("--batch takes --until and --models only; a line may have its 'oracle'")
@@ -102,12 +107,15 @@ def refer(
     from deixis.workflows.descriptions.refer import refer as find
     from deixis.workflows.layouts.read import load_scene
 
+    require_plot(plot)
     out = sys.stderr if as_json else sys.stdout
     seen = load_scene(scene, hide_labels, image)
     note_unit(seen)
     if picked is not None:
         if memory is None:
             raise typer.BadParameter("--picked needs --memory DIR, which is to learn the adjectives")
+        if plot is not None:
+            raise typer.BadParameter("--picked excludes --plot: it teaches, and finds no object")
         _remember(text, seen, picked, memory)
         return
     known = _attributes(attributes, memory)
@@ -120,6 +128,8 @@ def refer(
         if oracle is not None:
             print_lines([f"{turn.question.text} {'yes' if turn.yes else 'no'}" for turn in found.turns])
         print_lines(reference_lines(found))
+    if found.target is not None:
+        draw_answer(found, plot, as_json)
     raise typer.Exit(NO if found.target is None else 0 if found.decided else UNDECIDED)
 
 

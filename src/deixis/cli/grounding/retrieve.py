@@ -16,10 +16,13 @@ from deixis.cli.common import (
     HideLabels,
     MemoryDir,
     NoMemory,
+    Picture,
     TimeLimit,
+    draw_answer,
     print_json,
     print_lines,
     print_note,
+    require_plot,
     tell_of_compiling,
 )
 from deixis.cli.progress import progress_bar
@@ -47,12 +50,14 @@ def retrieve(
     no_memory: NoMemory = False,
     hide_labels: HideLabels = False,
     time_limit: TimeLimit = 60.0,
+    plot: Picture = None,
     as_json: AsJson = False,
 ) -> None:
     """Rank the known layouts by similarity to a scene, or scenes by similarity to a script; exit 1 without a result."""
     from deixis.report.grounding.retrieve import retrieval_lines, retrieval_to_dict
     from deixis.workflows.grounding.retrieve import retrieve as run
 
+    require_plot(plot)
     tell_of_compiling()
     with _remembering(memory, no_memory) as session, progress_bar("comparing") as progress:
         retrieved = run(
@@ -72,6 +77,7 @@ def retrieve(
         print_lines(retrieval_lines(retrieved))
     if not retrieved.found:
         raise typer.Exit(NO)
+    draw_answer(retrieved, plot, as_json)
     if not all(one.proved for one in retrieved.found):
         raise typer.Exit(UNDECIDED)
 

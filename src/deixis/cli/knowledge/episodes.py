@@ -353,11 +353,15 @@ def memory_(
     as_json: AsJson = False,
 ) -> None:
     """Print the content of one of the five memories."""
+    from deixis.memory.episodes.blackboard import Blackboard, has_episodes
     from deixis.memory.on_demand import default_memory
     from deixis.session import Session
+    from deixis.text_files import is_folder
     from deixis.workflows.knowledge.episodes import Memory, memory_lines, memory_to_dict
 
-    with _board(memory) as board, Session(memory or default_memory()) as session:
+    folder = memory or default_memory()
+    without_episodes = is_folder(folder) and not has_episodes(folder)
+    with Blackboard.transient() if without_episodes else _board(folder) as board, Session(folder) as session:
         if as_json:
             print_json(memory_to_dict(Memory(name.value), board, session))
             return

@@ -6,7 +6,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from deixis.cli.common import NO, UNDECIDED, AsJson, TimeLimit, print_json, print_lines
+from deixis.cli.common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    Picture,
+    TimeLimit,
+    draw_answer,
+    print_json,
+    print_lines,
+    require_plot,
+)
 from deixis.cli.progress import progress_bar, time_bar
 
 if TYPE_CHECKING:
@@ -40,6 +50,7 @@ def time_command(
         typer.Option(metavar="S P O", help="Only statements with this subject, predicate and object; * is anything."),
     ] = (ANY, ANY, ANY),
     time_limit: TimeLimit = 10.0,
+    plot: Picture = None,
     as_json: AsJson = False,
 ) -> None:
     """Print the known bounds of when things held, and what follows; exit 1 if the statements contradict."""
@@ -53,6 +64,7 @@ def time_command(
         raise DeixisError("time: --at, --window, --relate and --explain exclude one another")
     if pattern != (ANY, ANY, ANY) and (relate is not None or explain is not None):
         raise DeixisError("time: --pattern excludes --relate and --explain")
+    require_plot(plot)
     content = read_fluents(fluents)
     try:
         with progress_bar("adding the statements") as progress:
@@ -70,6 +82,7 @@ def time_command(
         _print_held(chronology, at, window, _pattern(*pattern), as_json)
     else:
         _print_chronology(chronology, _pattern(*pattern), as_json)
+    draw_answer(chronology, plot, as_json)
     if chronology.status == "undecided" or not chronology.exact:
         raise typer.Exit(UNDECIDED)
 

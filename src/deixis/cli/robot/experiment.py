@@ -28,13 +28,14 @@ def figure6(
     as_json: AsJson = False,
 ) -> None:
     """Repeat the paper's Figure 6: the accuracy of the matches against the graph similarity."""
-    from deixis.experiments.figure6 import run
+    from deixis.experiments.figure6 import figure6_lines, run, steps
 
-    result = run(out, variants=variants, orders=orders, seed=seed)
+    with step_bar(steps(variants)) as tick:
+        result = run(out, variants=variants, orders=orders, seed=seed, tick=lambda: tick("place settings"))
     if as_json:
         print_json(result.to_dict())
     else:
-        print_lines(result.lines())
+        print_lines(figure6_lines(result))
 
 
 @experiment.command()
@@ -51,7 +52,7 @@ def scoreboard(
 ) -> None:
     """Compare the engines on generated tables, and on the photographs in $DEIXIS_DATA if it is set."""
     from deixis.experiments.photographs import photographs_folder
-    from deixis.experiments.scoreboard.report import lines, to_dict
+    from deixis.experiments.scoreboard.report import lines
     from deixis.experiments.scoreboard.run import ScoreboardPlan, run, steps
 
     require_plot(plot)
@@ -66,7 +67,7 @@ def scoreboard(
         with progress_bar("drawing"):
             plot_scoreboard(found, plot)
     if as_json:
-        print_json(to_dict(found))
+        print_json(found.to_dict())
     else:
         print_lines(lines(found))
         print_written(plot)
@@ -84,7 +85,7 @@ def open_ended(
     as_json: AsJson = False,
 ) -> None:
     """Teach each learner one kind after another, in random orders, until it learns no more."""
-    from deixis.experiments.open_ended.report import lines, to_dict
+    from deixis.experiments.open_ended.report import lines
     from deixis.experiments.open_ended.run import OpenEndedPlan, run
     from deixis.experiments.open_ended.things import meshes_folder
 
@@ -94,9 +95,10 @@ def open_ended(
     if plot is not None:
         from deixis.experiments.open_ended.plot import plot_open_ended
 
-        plot_open_ended(found, plot)
+        with progress_bar("drawing"):
+            plot_open_ended(found, plot)
     if as_json:
-        print_json(to_dict(found))
+        print_json(found.to_dict())
     else:
         print_lines(lines(found))
         print_written(plot)
@@ -115,7 +117,7 @@ def apprentice(
     as_json: AsJson = False,
 ) -> None:
     """Show a robot four things, describe six layouts on example tables, and have it check further tables."""
-    from deixis.experiments.apprentice.report import lines, to_dict
+    from deixis.experiments.apprentice.report import lines
     from deixis.experiments.apprentice.run import ApprenticePlan, run
 
     if story is not None:
@@ -129,8 +131,9 @@ def apprentice(
     if story is not None:
         from deixis.experiments.apprentice.story import write_story
 
-        write_story(plan, story)
+        with progress_bar("drawing the story"):
+            write_story(plan, story)
     if as_json:
-        print_json(to_dict(found))
+        print_json(found.to_dict())
     else:
         print_lines(lines(found))

@@ -7,7 +7,6 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,7 +14,7 @@ import typer
 
 from deixis.cli.common import AsJson, MemoryDir, print_json, print_line, print_written
 from deixis.cli.output import StandardInput
-from deixis.cli.progress import time_bar
+from deixis.cli.progress import progress_bar
 from deixis.errors import DeixisError
 
 if TYPE_CHECKING:
@@ -110,7 +109,7 @@ def run(
         typing = threading.Thread(target=_listen, args=(robot, report), name="typed words", daemon=True)
         if sys.stdin is not None and sys.stdin.isatty():
             typing.start()
-        waiting = time_bar("following the story", inf) if as_json else nullcontext()
+        waiting = progress_bar("following the story") if as_json else nullcontext()
         with _watched(robot, lines) if view else waiting:
             robot.wait()
             if robot.problem is not None:
@@ -131,7 +130,10 @@ def run(
             "faults": list(robot.faults()),
             "dropped": robot.dropped,
         }
-        written = None if story is None else write_story(robot, story)
+        written = None
+        if story is not None:
+            with progress_bar("drawing the story"):
+                written = write_story(robot, story)
     if as_json:
         print_json(answer)
         return

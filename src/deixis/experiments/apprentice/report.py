@@ -49,6 +49,27 @@ def to_dict(found: Apprentice) -> dict[str, Any]:
     }
 
 
+def rows(found: Apprentice) -> list[dict[str, Any]]:
+    """Return a row for each share that the run measures.
+
+    Parameters
+    ----------
+    found
+        The findings.
+
+    Returns
+    -------
+    list of dict
+        Name of the figure, ``share``, ends of its interval of 95 %, and the counts ``right`` and ``of``.
+    """
+    table = []
+    for name, number in figures(found).items():
+        low, high = number.interval or (None, None)
+        share = {"share": number.share, "low": low, "high": high}
+        table.append({"figure": name, **share, "right": number.right, "of": number.of})
+    return table
+
+
 def _rounded(share: float | None) -> float | None:
     return None if share is None else round(share, 4)
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from deixis.answers import Answer, count
 from deixis.examples_data import example
 from deixis.experiments.apprentice.scoring import Count, TableScore, score, total, true_things
 from deixis.experiments.apprentice.tables import Tampered, lay_tampered
@@ -106,13 +107,19 @@ class Taught:
     questions: int
 
 
-@dataclass(frozen=True)
-class Apprentice:
+@dataclass(frozen=True, repr=False)
+class Apprentice(Answer):
     """The findings of a run."""
 
     plan: ApprenticePlan
     lessons: tuple[LessonScore, ...]
     tables: tuple[TableScore, ...]
+
+    def summary(self) -> str:
+        """Return the numbers of first and of further tables, and the share of things that were named right."""
+        named = figures(self)["names_right"]
+        further = f"{len(self.tables)} further {'table' if len(self.tables) == 1 else 'tables'}"
+        return f"{count(len(self.lessons), 'first table')}, {further}: {named.right} of {named.of} things named right"
 
     @property
     def questions(self) -> int:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.experiments.open_ended.run import OpenEnded
+from deixis.experiments.open_ended.run import Findings, OpenEnded
 from deixis.perception.recognition.learners.teaching import Course
 from deixis.plots.figure import INK, dress_chart, new_figure, save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 COLOURS = ("#1f4e79", "#e0a02c", "#c0392b", "#7f8c8d", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c", "#d46a9f")
 Curve = Callable[[Course], NDArray[np.float64]]
@@ -33,6 +38,28 @@ def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
     MissingExtraError
         If matplotlib is not installed.
     """
+    save(open_ended_figure(found), path)
+
+
+def open_ended_figure(found: OpenEnded, into: Axes | None = None) -> Figure:
+    """Draw the courses: known categories, accuracy and stored instances, a row for each set of views.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+    into
+        Axes for the known categories of the first set alone; None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    if into is not None:
+        _draw(into, found.findings[0], "categories known", known_categories)
+        into.legend(frameon=False, fontsize=8, labelcolor=INK)
+        return into.figure.figure
     figure, axes = new_figure(12.0, 3.6 * len(found.findings) + 0.6, nrows=len(found.findings), ncols=3, squeeze=False)
     panels = (
         ("categories known", known_categories),
@@ -41,16 +68,19 @@ def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
     )
     for one, row in zip(found.findings, axes, strict=True):
         for panel, (title, curve) in zip(row, panels, strict=True):
-            for number, name in enumerate(dict.fromkeys(taught.contestant for taught in one.taught)):
-                mean = mean_curve([curve(taught.course) for taught in one.of(name)])
-                width = 2.2 if number == 0 else 1.2
-                panel.plot(
-                    np.arange(1, len(mean) + 1), mean, color=COLOURS[number % len(COLOURS)], linewidth=width, label=name
-                )
-            dress_chart(panel, f"{one.name}: {title}", "question and correction iterations")
+            _draw(panel, one, title, curve)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9, labelcolor=INK)
-    save(figure, path)
+    return figure
+
+
+def _draw(axes: Axes, one: Findings, title: str, curve: Curve) -> None:
+    """Draw the mean curve of every learner."""
+    for number, name in enumerate(dict.fromkeys(taught.contestant for taught in one.taught)):
+        mean = mean_curve([curve(taught.course) for taught in one.of(name)])
+        across, colour = np.arange(1, len(mean) + 1), COLOURS[number % len(COLOURS)]
+        axes.plot(across, mean, color=colour, linewidth=2.2 if number == 0 else 1.2, label=name)
+    dress_chart(axes, f"{one.name}: {title}", "question and correction iterations")
 
 
 def known_categories(course: Course) -> NDArray[np.float64]:

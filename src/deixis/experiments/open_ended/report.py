@@ -48,6 +48,27 @@ def to_dict(found: OpenEnded) -> dict[str, Any]:
     }
 
 
+def rows(found: OpenEnded) -> list[dict[str, Any]]:
+    """Return a row for each course.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    list of dict
+        Set of views, learner, how the course ended, and its measures.
+    """
+    return [
+        {"set": one.name, "learner": taught.contestant, "ended": taught.course.end.value}
+        | {name: measure(taught) for name, measure in MEASURES.items()}
+        for one in found.findings
+        for taught in one.taught
+    ]
+
+
 def _single_views_json(found: Ways) -> list[dict[str, Any]]:
     return [
         {"split": title, "by": way, "accuracy": [s.accuracy for s in scores], "auroc": [s.auroc for s in scores]}

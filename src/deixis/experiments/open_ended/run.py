@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from deixis.answers import Answer, count
 from deixis.experiments.open_ended.comparison import (
     Matrix,
     NamingMethod,
@@ -146,13 +147,18 @@ class Findings:
         return [one for one in self.taught if one.contestant == contestant]
 
 
-@dataclass(frozen=True, eq=False)
-class OpenEnded:
+@dataclass(frozen=True, eq=False, repr=False)
+class OpenEnded(Answer):
     """The plan, the findings over each set of things, and a list of the parts left out."""
 
     plan: OpenEndedPlan
     findings: tuple[Findings, ...]
     skipped: tuple[str, ...]
+
+    def summary(self) -> str:
+        """Return the numbers of sets of views and of courses."""
+        courses = sum(len(one.taught) for one in self.findings)
+        return f"{count(len(self.findings), 'set')} of views, {count(courses, 'course')}"
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from deixis.plots.figure import INK, QUIET, dress_chart, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 COLOURS = (
     "#1f4e79", "#e0a02c", "#c0392b", "#5a9a5a", "#8e6bbf", "#7f8c8d",
@@ -49,6 +50,29 @@ def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
     MissingExtraError
         If matplotlib is not installed.
     """
+    save(scoreboard_figure(found), path)
+
+
+def scoreboard_figure(found: Scoreboard, into: Axes | None = None) -> Figure:
+    """Draw the scoreboard: accuracy by size and noise, times, limits, calibration and ablations.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+    into
+        Axes for the accuracy at the middle noise alone; None for a new figure of nine panels.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    if into is not None:
+        off = found.plan.off[len(found.plan.off) // 2]
+        _by_size(into, found.main, off, "right", f"share right, {100 * off:.0f} % off")
+        into.legend(frameon=False, fontsize=8, labelcolor=INK)
+        return into.figure.figure
     figure, axes = new_figure(12.0, 10.2, nrows=3, ncols=3)
     panels = iter(axes.ravel())
     offs = found.plan.off[:3]
@@ -68,7 +92,7 @@ def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
     legend = figure.legend(handles, labels, loc="outside lower center", ncols=7, frameon=False, fontsize=9)
     for text in legend.get_texts():
         text.set_color(INK)
-    save(figure, path)
+    return figure
 
 
 def _sizes(axes: Axes, sizes: Sequence[int]) -> None:

@@ -49,6 +49,24 @@ def to_dict(found: Scoreboard) -> dict[str, Any]:
     return {key: _known(value) for key, value in data.items()}
 
 
+def rows(found: Scoreboard) -> list[dict[str, Any]]:
+    """Return a row for each engine in each group of tables.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    list of dict
+        Number of ``objects``, share of facts that are ``off``, ``engine``, number of ``cases``, the mean of each
+        measure, and the median ``seconds``.
+    """
+    entries = _board_json(found.main)["groups"]
+    return [{key: value["mean"] if key in MEASURES else value for key, value in entry.items()} for entry in entries]
+
+
 def _board_json(board: Board) -> dict[str, Any]:
     settings = sorted({score.setting for score in board.scores})
     return {

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from deixis.answers import Answer, count
 from deixis.experiments.photographs import FOLDER
 from deixis.experiments.scoreboard.bayes_limit import Limit, bayes_limit
 from deixis.experiments.scoreboard.board import Board, run_contestants
@@ -178,8 +179,8 @@ class Limited:
     incomplete: int  # tables whose maps could not all be listed
 
 
-@dataclass(frozen=True, eq=False)
-class Scoreboard:
+@dataclass(frozen=True, eq=False, repr=False)
+class Scoreboard(Answer):
     """The main board, the ablations (with kinds), the limits, and a list of the parts left out."""
 
     plan: ScoreboardPlan
@@ -187,6 +188,10 @@ class Scoreboard:
     ablations: Board
     limits: tuple[Limited, ...]
     skipped: tuple[str, ...]
+
+    def summary(self) -> str:
+        """Return the numbers of engines and of scores."""
+        return f"{count(len(self.main.contestants), 'engine')}, {count(len(self.main.scores), 'score')}"
 
     def calibrations(self) -> dict[str, Reliability]:
         """Return the calibration of the default engine: by noise, small and large tables apart, and of photographs.

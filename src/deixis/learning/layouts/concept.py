@@ -15,6 +15,7 @@ import numpy as np
 import pyoxigraph as ox
 
 from deixis.answers import Answer, count
+from deixis.arguments import checks_arguments
 from deixis.grammar.layout.format import layout_script
 from deixis.learning.layouts.experience import COMPARED, TOLERANCE, Experience, Tally
 from deixis.learning.layouts.tables import TaughtTable
@@ -108,6 +109,7 @@ class CountedConcept(Answer):
         """Roles that were not on every table."""
         return frozenset(role for role, tally in self.filled.items() if tally.held < tally.of)
 
+    @checks_arguments
     def script(self, ontology: Ontology) -> str:
         """Return the layout as a script; with several tables, comments at its end give the counts.
 
@@ -154,6 +156,7 @@ class CountedConcept(Answer):
         notes |= {f"role-{role}": f"on {t.held:g} of {t.of:g} tables" for role, t in self.filled.items()}
         return layout_shapes(self.layout, self.optional, notes)
 
+    @checks_arguments
     def owl(self, relations: Relations) -> Iterator[ox.Triple]:
         """Yield the OWL class of the layout with its roles and statements; optional things are not required.
 

@@ -7,12 +7,14 @@ from math import exp
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import count
+from deixis.memory.semantic.rdf.files import short
 from deixis.ontology.models.relations import RelationModel, RelationModels
 from deixis.ontology.relations.allen import SYMBOLS
 from deixis.ontology.relations.relation import Relation, Relations
 
 if TYPE_CHECKING:
     from deixis.learning.models.words import LearnedWords
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
     from deixis.workflows.descriptions.learn_reference import LearnedReference
 
 
@@ -39,19 +41,100 @@ def relation_lines(relation: Relation, relations: Relations, models: RelationMod
         height = f"; z {_signs(one.z_atoms)}" if one.z_atoms else ""
         lines.append(f"{one.reading.value:<11} x {_signs(one.x_atoms)}; y {_signs(one.y_atoms)}{height}")
     model = models.of(wide)
-    origin = model.provenance
-    if origin.made is None:
-        source = "shipped, from prototypes"
-    else:
-        scenes = len(origin.sources) + len(origin.lessons)
-        of = "one scene" if scenes == 1 else f"{scenes} scenes"
-        source = f"learned from {_facts(model)} of {of} on {origin.made:%Y-%m-%d}"
-    lines.append(f"graded      model '{model.name}', {source}")
+    lines.append(f"graded      model '{model.name}', {_origin(model)}")
     lines.append(f"            outliers {model.outliers:g}, degree by chance {model.chance:.3f}")
     for term in model.terms:
         points = ", ".join(f"{knot:g}: {exp(value):.2g}" for knot, value in zip(term.knots, term.values, strict=True))
         lines.append(f"  {term.feature:<10}{points}")
     return lines
+
+
+def _origin(model: RelationModel) -> str:
+    """Return where a model comes from, in words."""
+    origin = model.provenance
+    if origin.made is None:
+        return "shipped, from prototypes"
+    scenes = len(origin.sources) + len(origin.lessons)
+    of = "one scene" if scenes == 1 else f"{scenes} scenes"
+    return f"learned from {_facts(model)} of {of} on {origin.made:%Y-%m-%d}"
+
+
+def meaning_lines(meaning: Meaning) -> list[str]:
+    """Return how words are read, where the model of each family of words comes from, and the learned sizes.
+
+    Parameters
+    ----------
+    meaning
+        Models of words and sizes.
+
+    Returns
+    -------
+    list of str
+        A line for the reading, one for each model, and one for each kind with a learned size.
+    """
+    reading = "by degrees" if meaning.graded else "literally"
+    lines = [f"Words are read {reading}."]
+    lines += [f"{model.name:<16} {_origin(model)}" for model in meaning.models_in_force.models.values()]
+    for row in _size_rows(meaning):
+        unit = "of the median length of the scene" if row["relative"] else "m"
+        lines.append(f"{row['kind']:<16} length {row['length']:.3g} {unit}, aspect {row['aspect']:.2g}")
+    return lines
+
+
+def meaning_to_dict(meaning: Meaning) -> dict[str, Any]:
+    """Return models of words and sizes as plain data.
+
+    Parameters
+    ----------
+    meaning
+        Models of words and sizes.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``graded``, ``models`` and ``sizes``, which are the learned ones.
+    """
+    models = [model_to_dict(model) for model in meaning.models_in_force.models.values()]
+    return {"graded": meaning.graded, "models": models, "sizes": list(_size_rows(meaning))}
+
+
+def meaning_rows(meaning: Meaning) -> list[dict[str, Any]]:
+    """Return a row for each model of words, with the number of facts that taught it.
+
+    Parameters
+    ----------
+    meaning
+        Models of words and sizes.
+
+    Returns
+    -------
+    list of dict
+        ``model``, ``outliers``, ``chance``, ``facts`` and ``made``, which is None for a shipped model.
+    """
+    return [
+        {
+            "model": model.name,
+            "outliers": model.outliers,
+            "chance": model.chance,
+            "facts": model.provenance.examples,
+            "made": model.provenance.made,
+        }
+        for model in meaning.models_in_force.models.values()
+    ]
+
+
+def _size_rows(meaning: Meaning) -> Iterator[dict[str, Any]]:
+    """Yield the medians and deviations of each learned size, sorted by kind."""
+    for kind, size in sorted(meaning.sizes.items()):
+        yield {
+            "kind": short(kind),
+            "length": exp(size.length[0]),
+            "log_length_deviation": size.length[1],
+            "aspect": exp(size.aspect[0]),
+            "log_aspect_deviation": size.aspect[1],
+            "relative": size.relative,
+            "views": size.views,
+        }
 
 
 def relation_to_dict(relation: Relation, relations: Relations, models: RelationModels) -> dict[str, Any]:

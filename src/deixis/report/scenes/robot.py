@@ -112,6 +112,8 @@ def told_lines(told: Told) -> Iterator[str]:
     for role, among in told.lesson.waiting.items():
         listed = ", ".join(f"{thing or 'none of them'} {share:.2f}" for thing, share in list(among.items())[:4])
         yield doubt(f"{role:<24} waits: {listed}")
+    if told.contradiction is not None:
+        yield doubt(f"The description contradicts an earlier one: {told.contradiction}")
 
 
 def told_to_dict(told: Told) -> dict[str, Any]:
@@ -141,6 +143,7 @@ def told_to_dict(told: Told) -> dict[str, Any]:
             }
             for role, among in told.lesson.waiting.items()
         ],
+        "contradiction": told.contradiction,
     }
 
 

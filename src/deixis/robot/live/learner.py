@@ -11,6 +11,7 @@ from typing import ClassVar
 
 from deixis.errors import DeixisError
 from deixis.grammar.activities import announced_thing
+from deixis.grammar.recall.questions import is_question
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
@@ -20,7 +21,7 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line
 from deixis.reasoning.errors import NothingFoundError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
-from deixis.robot.diary import CALLED, FAULT, LAYOUT, NAMELESS, UNNAMED
+from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
@@ -28,16 +29,20 @@ from deixis.robot.live.senses import ENDED, MIN_DURATION, SAID, TABLE, WATCHED, 
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
-from deixis.workflows.knowledge.recall import CONTRADICTED, EXPECTED, IS_A, SAME_AS
+from deixis.workflows.knowledge.recall import CALLED, CONTRADICTED, EXPECTED, IS_A, SAME_AS
 from deixis.workflows.scenes.point import MIN_CONFIDENCE
 
 SAYS, DONE = "says", "done"
 """Predicates: what the robot says, and that it has dealt with the whole story."""
 
 _WRONG = re.compile(
-    r"\b(wrong|missing|mistakes?|correct|laid)\b|\b(?:this|it|everything|all|table)( laid)? right\b", re.IGNORECASE
+    r"\b(wrong|missing|mistakes?|correct)\b|^\W*(?:is|are)\b.*\blaid\b|\b(?:this|it|everything|all|table) right\b",
+    re.IGNORECASE,
 )
 """Words of questions about the mistakes on the present table."""
+
+_ASKED_NOW = re.compile(r"\W*(?:what|which|is|are)\b", re.IGNORECASE)
+"""Beginning of such a question, which recognised speech has without a question mark."""
 
 _TOLD = re.compile(r"\b(tell|told|say|said)\b", re.IGNORECASE)
 """Words of questions about what was said."""
@@ -252,7 +257,7 @@ class Learner(Module):
         if fluent.certainty < MIN_CONFIDENCE:
             self._say(f"I am not sure that I heard this right: {text} Please say it again.", at, board)
             return
-        if text.strip().endswith("?"):
+        if (_ASKED_NOW.match(text) and _WRONG.search(text)) or is_question(text, self.robot.session.ontology):
             self._say(self._answer(text, by, at, board), at, board)
             return
         if self._asked is not None and self._settled(text, by, at, board):
@@ -272,6 +277,8 @@ class Learner(Module):
             taught = _listed(result.taught) or "nothing new"
             waiting = f" I am not sure yet about: {_listed(result.waiting)}." if result.waiting else ""
             learned = f"I learned how '{result.lesson.layout}' is laid. I know now: {taught}.{waiting}"
+            if result.contradiction is not None:
+                learned += f" This contradicts an earlier description: {result.contradiction}."
             self._then(
                 lambda: self._understand(board, at),
                 lambda: self._say(learned, at, board),

@@ -236,12 +236,18 @@ def live_robot(
         _end_earlier(board)
         robot = LiveRobot(board, folder)
 
+        latest = 0.0
+
         def told(change: Logged) -> None:
+            nonlocal latest
             if change.after is None or change.before is not None:
                 return
             line = _line(change.after)
-            if line is not None:
-                report(f"{change.after.start.lower - robot.began:6.1f} s  {line}")
+            if line is not None:  # at the time at which it was understood: the end of the words, or of earlier lines
+                fluent = change.after
+                at = fluent.finish.lower if fluent.statement.predicate == SAID else fluent.start.lower
+                latest = max(latest, at - robot.began)
+                report(f"{latest:6.1f} s  {line}")
 
         def trouble(line: str) -> None:
             if " is slow," not in line:  # learning from a table takes seconds, and nothing is lost

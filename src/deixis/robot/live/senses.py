@@ -42,11 +42,11 @@ from deixis.perception.tracking.tracker import Tracker
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import to_ticks
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.diary import CALLED, NOT_CALLED
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.story import Event, Story, StorySettings
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
+from deixis.workflows.knowledge.recall import CALLED, NOT_CALLED
 from deixis.workflows.scenes.point import (
     MIN_CONFIDENCE,
     MIN_SIZE_FIT,
@@ -57,6 +57,7 @@ from deixis.workflows.scenes.point import (
     size_weights,
     spoken_name,
     taught_labels,
+    without_correction,
 )
 
 AT, TABLE, WATCHED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
@@ -218,6 +219,8 @@ class _Writer:
         self._detector = GestureDetector()
         self._watched_at = math.inf  # time of the last skeleton, until its gestures are finished
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
+        self._events: dict[Utterance, str] = {}
+        self._given: list[tuple[PointedLabel, str]] = []  # names that things got, each with its fluent
         self._waiting: list[_Words] = []
         self._came: dict[str, float] = {}  # time at which each thing came to the table; -inf if it lay there at first
         self._announced: dict[str, _Announced] = {}  # words that announced each thing
@@ -526,7 +529,8 @@ class _Writer:
             pointing = pointed_at(gesture, self._things)
             self._pointings.append(pointing)
             if pointing.decided is not None:
-                source = Source(Origin.SHOWN, printed_line(gesture.person), f"gesture at {gesture.at:.1f} s")
+                event = f"gesture {self._outbox.new_id(self._board)}"
+                source = Source(Origin.SHOWN, printed_line(gesture.person), event)
                 probability = pointing.probabilities[pointing.decided]
                 statement = (printed_line(gesture.person), POINTED_AT, pointing.decided)
                 added = self._add(statement, gesture.start, source, probability, gesture.finish)
@@ -552,7 +556,7 @@ class _Writer:
 
     def _write_utterance(self, utterance: Utterance) -> None:
         """Write words, and the names that they give to things."""
-        source = Source(Origin.SAID, utterance.speaker, f"words at {utterance.at:.1f} s")
+        source = Source(Origin.SAID, utterance.speaker, self._event(utterance))
         finish = utterance.end if utterance.end > utterance.at else utterance.at + MIN_DURATION
         statement, certainty = (utterance.speaker, SAID, utterance.text), max(utterance.confidence, 0.01)
         self._outbox.add(self._add(statement, utterance.at, source, certainty, finish))
@@ -562,15 +566,23 @@ class _Writer:
             self._name_announced()
         else:
             for label in self._labels(utterance, announced):
-                self._write_label(label)
+                self._write_label(self._agreeing(label))
+
+    def _event(self, utterance: Utterance) -> str:
+        """Return the id of the event of words, which those of another story on this memory do not have."""
+        if utterance not in self._events:
+            self._events[utterance] = f"words {self._outbox.new_id(self._board)}"
+        return self._events[utterance]
 
     def _write_label(self, label: PointedLabel) -> None:
         """Write a name that words give to a thing, or why nothing is taught."""
         utterance = label.utterance
-        shown = Source(Origin.SHOWN, utterance.speaker, f"words at {utterance.at:.1f} s")
+        shown = Source(Origin.SHOWN, utterance.speaker, self._event(utterance))
         if label.target is not None and label.refused is None and label.name is not None:
             what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
-            self._outbox.add(self._add(what, utterance.at, shown, label.probability))
+            added = self._add(what, utterance.at, shown, label.probability)
+            self._outbox.add(added)
+            self._given.append((label, added.fluent.id))
         elif label.name is not None and label.refused is not None:
             noticed = f"'{label.name}' was not learned: {label.refused}. {label.question or ''}".strip()
             self._outbox.add(self._add((utterance.speaker, NOTICED, noticed), utterance.at, shown))
@@ -605,7 +617,19 @@ class _Writer:
             return (replace(label, refused=why),)
         if not self._things.objects:
             return ()
-        return taught_labels([pointed_label(utterance, tuple(self._pointings), self._things)], self._things)[0]
+        return (pointed_label(utterance, tuple(self._pointings), self._things),)
+
+    def _agreeing(self, label: PointedLabel) -> PointedLabel:
+        """Return a label, refused if it contradicts an earlier name of the thing; a correction ends that name."""
+        *earlier, checked = taught_labels([*(given for given, _ in self._given), label], self._things)[0]
+        kept = []
+        for (given, fluent), now in zip(self._given, earlier, strict=True):
+            if now.refused is None:
+                kept.append((given, fluent))
+            else:
+                self._outbox.add(self._finished(fluent, given.utterance.at, label.utterance.at))
+        self._given = kept
+        return checked
 
     def _announced_label(self, announced: _Announced) -> PointedLabel:
         """Return what was announced with the thing that came to rest nearest in time, or why no thing gets the name.
@@ -727,9 +751,14 @@ def named(text: str) -> tuple[str | None, SpokenName | None]:
     --------
     >>> named("t3 is a fork.")
     ('t3', SpokenName(name='fork', positive=True, corrects=False))
+    >>> named("No, t3 is a spoon.")
+    ('t3', SpokenName(name='spoon', positive=True, corrects=True))
     """
-    known = re.match(r"\s*(t\d+)\s+", text)
-    return (None, spoken_name(text)) if known is None else (known[1], spoken_name(f"this {text[known.end() :]}"))
+    plain, corrects = without_correction(text)
+    known = re.match(r"\s*(t\d+)\s+", plain)
+    if known is None:
+        return None, spoken_name(text)
+    return known[1], spoken_name(f"{'no, ' if corrects else ''}this {plain[known.end() :]}")
 
 
 def _required(frame: NDArray[np.float64] | None) -> NDArray[np.float64]:

@@ -355,7 +355,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = RATE) -> Story:
     """
     from deixis.perception.errors import SimulationError
     from deixis.perception.simulator.cameras.camera import chair_camera
-    from deixis.perception.simulator.films.motion import Bring, Rest, Stage
+    from deixis.perception.simulator.films.stage import Bring, Rest, Stage
     from deixis.perception.simulator.laying import LaidTable, top_under, truth_scene
     from deixis.perception.simulator.teacher import Teacher
     from deixis.workflows.descriptions.tell import tell
@@ -446,7 +446,7 @@ def laying_story(script: Script, seed: int = 0, rate: float = RATE, camera: str 
     """
     from deixis.perception.simulator.cameras.camera import chair_camera
     from deixis.perception.simulator.films.camera_paths import camera_path
-    from deixis.perception.simulator.films.motion import Bring, Rest, Stage
+    from deixis.perception.simulator.films.stage import Bring, Rest, Stage
     from deixis.perception.simulator.laying import top_under, truth_scene
     from deixis.workflows.layouts.lay_table import lay_script
 

@@ -366,4 +366,5 @@ def _answer(
         frame,
         question,
         turns,
+        scene=scene,
     )

@@ -7,6 +7,7 @@ from itertools import product
 
 import pyoxigraph as ox
 
+from deixis.memory.semantic.validation.shacl import report_turtle
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.lessons.shapes import layout_shapes, scene_data
 from deixis.ontology.lessons.types import LayoutConcept
@@ -63,7 +64,7 @@ def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relatio
         graphs[0], shacl_graph=graphs[1], allow_warnings=True, allow_infos=True, do_owl_imports=False, inplace=True
     )
     assert isinstance(report, rdflib.Graph)
-    return bool(conforms), report.serialize(format="turtle")
+    return bool(conforms), report_turtle(report)
 
 
 def satisfied_relations(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
@@ -43,7 +44,7 @@ TIMELINE = 100
 """Number of fluents whose times are checked together."""
 
 MAX_SITUATIONS = 200
-"""Maximum number of situations of an aggregate whose spatial consistency is checked."""
+"""Maximum number of situations of an aggregate whose spatial or logical consistency is checked."""
 
 
 class Memory(StrEnum):
@@ -256,8 +257,8 @@ def check_consistency(
     Returns
     -------
     Consistency
-        The contradictions. Spatial ones are of relations that certainly hold at one time; logical ones are found by the
-        rules of OWL 2 RL.
+        The contradictions. Spatial and logical ones are of what certainly holds at one time; logical ones are found by
+        the rules of OWL 2 RL.
     """
     deadline = Deadline.after(time_limit)
     undecided: list[str] = []
@@ -299,16 +300,7 @@ def _spatial(
     known = {relation.name: relation for relation in ontology.relations.values()}
     known |= {relation.iri.rpartition("#")[2]: relation for relation in ontology.relations.values()}
     related = [each for each in fluents if each.statement.predicate in known and each.statement.object is not None]
-    times = sorted({each.start.upper for each in related if math.isfinite(each.start.upper)}) or [0.0]
-    if len(times) > MAX_SITUATIONS:
-        undecided.append(f"only the first {MAX_SITUATIONS} of {len(times)} situations were checked in space")
-    seen: set[frozenset[str]] = set()
-    for time in times[:MAX_SITUATIONS]:
-        held = [each for each in related if each.must_hold(time, time)]
-        ids = frozenset(each.id for each in held)
-        if ids in seen:
-            continue
-        seen.add(ids)
+    for time, held in _situations(related, undecided, "in space"):
         if deadline.passed:
             undecided.append("time limit reached before all situations were checked in space")
             return
@@ -338,28 +330,68 @@ def _logical(
     from deixis.memory.semantic.rdf.package import packaged
     from deixis.ontology.rdf.triples import with_blank_nodes
     from deixis.reasoning.description_logic.entailment import LogicEngine, entail
+    from deixis.reasoning.description_logic.justification import justify
 
-    triples = set(packaged()[GraphName.ONTOLOGY])
+    stated: dict[str, ox.Triple] = {}
     for each in fluents:
         statement = each.statement
         if statement.predicate == "isA" and statement.object is not None:
             kind, _ = ontology.of_name(statement.object)
             if kind is not None:
-                triples.add(ox.Triple(thing_iri(statement.subject), TYPE, ox.NamedNode(kind.iri)))
+                stated[each.id] = ox.Triple(thing_iri(statement.subject), TYPE, ox.NamedNode(kind.iri))
         elif statement.object is not None and statement.predicate in ontology.relations:
-            triples.add(statement_triple(statement))
-    text = (ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
-    if deadline.passed:
-        undecided.append("time limit reached before the fluents were checked by the ontology")
-        return
+            stated[each.id] = statement_triple(statement)
+    terms = set(packaged()[GraphName.ONTOLOGY])
+
+    def text_of(some: Iterable[EpisodicFluent]) -> str:
+        triples = terms | {stated[each.id] for each in some}
+        return (ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
+
+    told = [each for each in fluents if each.id in stated]
     try:
-        consistent = entail(text, LogicEngine.RL, deadline.left).consistent
+        if deadline.passed:
+            raise LimitError("no time left")
+        if entail(text_of(told), LogicEngine.RL, deadline.left).consistent:
+            return  # then what held at one time is consistent too
+        for time, held in _situations(told, undecided, "by the ontology"):
+            if deadline.passed:
+                raise LimitError("no time left")
+            text = text_of(held)
+            if entail(text, LogicEngine.RL, deadline.left).consistent:
+                continue
+            among = held
+            with suppress(LimitError):
+                axioms = justify(text, None, deadline).ntriples
+                needed = set(ox.parse(axioms, format=ox.RdfFormat.N_TRIPLES))
+                among = [each for each in held if any(quad.triple == stated[each.id] for quad in needed)]
+            statements = "; ".join(sorted(str(each.statement) for each in among))
+            yield f"at {time:g} s: the kinds and relations contradict the ontology: {statements}"
     except LimitError:
         undecided.append("time limit reached before the check of the fluents by the ontology was done")
-        return
-    if not consistent:
-        kinds = "; ".join(sorted(str(each.statement) for each in fluents if each.statement.predicate == "isA"))
-        yield f"the kinds and relations contradict the ontology: {kinds}"
+
+
+def _situations(
+    fluents: Sequence[EpisodicFluent], undecided: list[str], checked: str
+) -> Iterator[tuple[float, list[EpisodicFluent]]]:
+    """Yield the sets of fluents that certainly hold at one time, each with the first such time.
+
+    A fluent without any times is a plain triple, which always holds.
+    """
+    times = sorted({each.start.upper for each in fluents if math.isfinite(each.start.upper)}) or [0.0]
+    if len(times) > MAX_SITUATIONS:
+        undecided.append(f"only the first {MAX_SITUATIONS} of {len(times)} situations were checked {checked}")
+    seen: set[frozenset[str]] = set()
+    for time in times[:MAX_SITUATIONS]:
+        held = [each for each in fluents if _is_plain(each) or each.must_hold(time, time)]
+        ids = frozenset(each.id for each in held)
+        if ids not in seen:
+            seen.add(ids)
+            yield time, held
+
+
+def _is_plain(fluent: EpisodicFluent) -> bool:
+    """Return whether a fluent has no times."""
+    return all(math.isinf(end) for bounds in (fluent.start, fluent.finish) for end in (bounds.lower, bounds.upper))
 
 
 def change_to_dict(change: Logged) -> dict[str, Any]:
@@ -435,13 +467,13 @@ def known_classes(board: Blackboard, ontology: Ontology, under: str | None = Non
     """
     names = {kind.iri: kind.name for kind in ontology.kinds}
     broader = {kind.name: tuple(sorted(names[iri] for iri in kind.broader if iri in names)) for kind in ontology.kinds}
-    members: dict[str, list[str]] = {}
+    members: dict[str, dict[str, None]] = {}
     for each in board.now(Pattern(predicate="isA")):
         kind_name = str(each.statement.object)
         kind, _ = ontology.of_name(kind_name)
         name = kind_name if kind is None else kind.name
         broader.setdefault(name, ())
-        members.setdefault(name, []).append(each.statement.subject)
+        members.setdefault(name, {})[each.statement.subject] = None
     if under is not None:
         kind, _ = ontology.of_name(under)
         top = under if kind is None else kind.name
@@ -449,7 +481,7 @@ def known_classes(board: Blackboard, ontology: Ontology, under: str | None = Non
             meant = nearest(top, broader)
             raise UnknownTermError(f"there is no class '{under}'" + (f"; did you mean '{meant}'?" if meant else ""))
         broader = {name: above for name, above in broader.items() if name == top or top in above}
-    return tuple(KnownClass(name, broader[name], tuple(members.get(name, ()))) for name in sorted(broader))
+    return tuple(KnownClass(name, broader[name], tuple(members.get(name, {}))) for name in sorted(broader))
 
 
 def memory_lines(which: Memory, board: Blackboard, session: _Learner) -> Iterator[str]:

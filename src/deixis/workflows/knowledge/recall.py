@@ -15,6 +15,7 @@ from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 from deixis.answers import Answer
+from deixis.arguments import checks_arguments
 from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuestionError, When, read_question
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
@@ -28,6 +29,12 @@ if TYPE_CHECKING:
 
 AT, IS_A, SAID, POINTED_AT = "at", "isA", "said", "pointedAt"
 """Predicates of situations: the box of a thing, its category, what a person said, and what a person pointed at."""
+
+CALLED, NOT_CALLED = "called", "notCalled"
+"""Predicates of the names that a person gives to a tracked thing, and of those that the person denies."""
+
+NAMED = frozenset({IS_A, CALLED})
+"""Predicates of the statements with which a person shows a thing."""
 
 EXPECTED, SAME_AS, CONTRADICTED = "expected", "sameAs", "contradicted"
 """Predicates of objects that a person said are there: the words, the thing that it turned out to be, and the reason why
@@ -110,6 +117,7 @@ class Recall(Answer):
         """Return the answer in a sentence."""
         return self.answer
 
+    @checks_arguments
     def moment(self, seconds: float) -> datetime | None:
         """Return seconds since the origin as local time.
 
@@ -342,7 +350,7 @@ class _Remembering:
         """Return the search of the fluents that answer a question."""
         kind = question.kind
         things = None if question.thing is None else self.resolve(question.thing)
-        if kind in EVENTS or kind in ("when_did", "whether_did"):
+        if kind in EVENTS or kind in ("when_did", "whether_did", "how_many_did"):
             return self._search_of_event(question, things)
         if kind in ("shown", "said", "who", "happened"):
             return self._search_of_statements(question, things)
@@ -350,27 +358,41 @@ class _Remembering:
             return self._search_of_expected(question)
         start, end, pick = self.window(question.when, event=False)
         edge = Edge.FINISHES if pick is Pick.LAST else Edge.STARTS if pick is Pick.FIRST else Edge.HOLDS
-        if kind == "when_held":
+        if kind in ("when_held", "when_there"):
             start, end, pick, edge = -math.inf, self.asked, Pick.ALL, Edge.HOLDS
         found = FluentSearch(things, self.places, edge=edge, start=start, end=end, pick=pick)
         if kind in ("where_put", "seen_last"):
             found = replace(found, edge=Edge.HOLDS if kind == "seen_last" else Edge.STARTS, pick=Pick.LAST)
             found = replace(found, start=-math.inf, end=self.asked)
         if question.relation is None:
-            if kind in ("where", "where_put", "seen_last") and self.relations:
+            if kind in ("where", "where_was", "where_put", "seen_last") and self.relations:
                 by_relation = replace(found, predicates=self.relations)
                 found = by_relation if by_relation.run(self.board) else found
+            if kind == "where_was" and not found.run(self.board):  # it has left its place
+                found = self._search_of_last_places(found)
             if things is not None and things & self.expected.keys():
                 words = frozenset({EXPECTED})
                 if kind == "whether_there":
                     return replace(found, predicates=found.predicates and found.predicates | words)
-                if kind == "where" and not found.run(self.board):
+                if kind in ("where", "where_was") and not found.run(self.board):
                     return replace(found, predicates=words)
             return found
         related = replace(found, predicates=frozenset({question.relation}))
         if question.other in SURFACES and question.relation == "on" and not self._is_known(question.other):
             return related if related.run(self.board) else found
         return replace(related, objects=None if question.other is None else self.resolve(question.other))
+
+    def _search_of_last_places(self, search: FluentSearch) -> FluentSearch:
+        """Return the search of where the things of a search were before they left their places."""
+        last = replace(search, edge=Edge.FINISHES, start=-math.inf, pick=Pick.LAST, objects=None)
+        by_relation = replace(last, predicates=self.relations)
+        return by_relation if by_relation.run(self.board) else replace(last, predicates=self.places)
+
+    def _last_places(self, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
+        """Return where the things of a search were before they left their places; nothing if one is in its place."""
+        if search.subjects is None or replace(search, predicates=self.places, objects=None).run(self.board):
+            return ()
+        return self._search_of_last_places(search).run(self.board)
 
     def _is_known(self, noun: str) -> bool:
         try:
@@ -391,7 +413,7 @@ class _Remembering:
         start, end, pick = self.window(question.when, event=True)
         pick = Pick(question.order) if question.order else pick
         if question.event == "shown":
-            return FluentSearch(things, None, None, frozenset({Origin.SHOWN}), None, Edge.STARTS, start, end, pick)
+            return FluentSearch(things, NAMED, None, frozenset({Origin.SHOWN}), None, Edge.STARTS, start, end, pick)
         event = EVENTS[question.event or question.kind]
         return self.event_search(event, things, start, end, pick)
 
@@ -406,10 +428,10 @@ class _Remembering:
             sentences = replace(statement, predicates=frozenset({SAID}))
             return sentences if sentences.run(self.board) else statement
         origins = frozenset({Origin.SHOWN, Origin.SAID} if question.kind == "who" else {Origin.SHOWN})
-        return FluentSearch(things, None, None, origins, by, Edge.STARTS, start, end, pick)
+        return FluentSearch(things, NAMED, None, origins, by, Edge.STARTS, start, end, pick)
 
     def _persons(self, question: RecallQuestion) -> frozenset[str] | None:
-        wanted = question.speaker or self.speaker
+        wanted = question.speaker or (self.speaker if question.of_asker else None)
         if wanted is None or question.kind not in ("shown", "said", *OF_EXPECTED):
             return None
         origins = (Origin.SAID, Origin.SHOWN)
@@ -469,13 +491,14 @@ class _Remembering:
             return ()
         wrong = replace(search, predicates=frozenset({CONTRADICTED}), edge=Edge.STARTS, objects=None)
         missing = replace(wrong, start=-math.inf, pick=Pick.LAST).run(self.board)
-        if question.kind == "whether_there":
-            return missing
-        return replace(search, predicates=self.relations, objects=None).run(self.board) or missing
+        elsewhere = replace(search, predicates=self.relations, objects=None).run(self.board)
+        if question.kind == "whether" and (elsewhere or missing):
+            return elsewhere or missing
+        return missing or (self._last_places(search) if question.when.kind in ("unstated", "now") else ())
 
     def _reason(self, question: RecallQuestion) -> str:
         """Return why nothing answers a question."""
-        if question.kind == "where" and question.when.kind in ("unstated", "now"):
+        if question.kind in ("where", "where_was") and question.when.kind in ("unstated", "now"):
             gone = self.event_search(Event.GOES, self.resolve(question.thing or ""), -math.inf, self.asked, Pick.LAST)
             found = gone.run(self.board)
             if found:
@@ -552,7 +575,7 @@ def _sentence(found: Recall) -> str:
         return f"Probably{'' if sure >= 0.5 else ' not'}: {statement}."
     if kind in ("whether", "whether_there"):
         return f"Yes: {'; '.join(_fact(found, fact) for fact in facts)}."
-    if kind == "how_many":
+    if kind in ("how_many", "how_many_did"):
         number = len({fact.fluent.statement.subject for fact in facts})
         return f"{number}: {', '.join(sorted(_distinct(f'the {fact.name}' for fact in facts)))}."
     if kind in ("gone", "come", "moved", "when_did", "whether_did"):

@@ -26,7 +26,7 @@ from deixis.learning.views.teachings import Teaching, Teachings, boxes_key, prev
 from deixis.memory.episodes.blackboard import open_episodes
 from deixis.memory.episodes.experiences import without_lessons
 from deixis.memory.episodes.fluents.changes import Change, Delete, Update
-from deixis.memory.episodes.fluents.episode import EVENT, EpisodicFluent, Origin
+from deixis.memory.episodes.fluents.episode import EVENT, EpisodicFluent, Origin, event_of
 from deixis.memory.journal import Part, write_together
 from deixis.ontology.things.kinds import plain_name
 from deixis.perception.scene import Scene
@@ -56,10 +56,10 @@ UNLEARN = "unlearn"
 class Selection:
     """Choice of what to take back. A lesson or a teaching of a view is taken back if all given parts hold of it.
 
-    ``lesson`` selects a lesson, and what it taught; ``sentence`` selects lessons in these words, and this sentence of
-    the others that have it, with all that came only from it; ``label`` and ``view`` select what a person taught about
-    views. ``table`` is a scene, or the name of its file. ``since`` is the first moment and ``until`` the first moment
-    after the last one, both with a time zone.
+    ``lesson`` selects a lesson, and what it taught; ``sentence`` selects lessons and names of things in these words, and
+    this sentence of the other lessons that have it, with all that came only from it; ``label`` and ``view`` select what a
+    person taught about views. ``table`` is a scene, or the name of its file. ``since`` is the first moment and ``until``
+    the first moment after the last one, both with a time zone.
     """
 
     lesson: str | None = None
@@ -182,6 +182,7 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
         if memory is not None:
             held.enter_context(memory.exclusive())
         before = {} if memory is None else _teachings(memory, knowledge)
+        chosen.events = set() if board is None else _spoken(board, chosen)
         new = {lesson.id: lesson for lesson in revised}
         after = {view: _without(turns, lessons, new, chosen, view) for view, turns in before.items()}
         after = {view: turns for view, turns in after.items() if turns != before[view]}
@@ -205,6 +206,14 @@ def _teaching_events(lessons: Sequence[str], knowledge: KnowledgeStore) -> set[s
     known = events_of_lessons(knowledge.memory().store)
     kept = {event for lesson, events in known.items() if lesson not in lessons for event in events}
     return {*lessons, *(event for lesson in lessons for event in known.get(lesson, ()))} - kept
+
+
+def _spoken(board: Blackboard, chosen: _Chosen) -> set[str]:
+    """Return the events in which persons said the sentence that is taken back, as views name them."""
+    if chosen.sentence is None:
+        return set()
+    said = (each for each in board.holding() if chosen.holds_of_fluent(each, board.moment))
+    return {event_of(board.origin, each.source.event) for each in said if each.source.event is not None}
 
 
 def _shown(board: Blackboard, before: Mapping[str, Teachings], after: Mapping[str, Teachings]) -> set[str]:
@@ -255,6 +264,7 @@ class _Chosen:
         self.label = None if selection.label is None else category_name(selection.label)
         self.sentence = None if selection.sentence is None else plain(selection.sentence)
         self.boxes, self.file = _table(selection.table)
+        self.events: set[str] = set()  # in which the sentence was said
 
     def holds_of_lesson(self, lesson: Provenance, whole: bool = True) -> bool:
         """Return whether a lesson is taken back, or, unless ``whole``, may lose a sentence."""
@@ -272,7 +282,9 @@ class _Chosen:
     def holds_of_teaching(self, turn: Teaching, view: str) -> bool:
         """Return whether what a person taught about a view is taken back; lessons take back theirs."""
         wanted = self.all
-        if turn.lesson is not None or wanted.lesson is not None or wanted.sentence is not None:
+        if turn.lesson is not None or wanted.lesson is not None:
+            return False
+        if wanted.sentence is not None and turn.metadata.get(EVENT) not in self.events:
             return False
         boxes = turn.metadata.get("boxes")
         return (

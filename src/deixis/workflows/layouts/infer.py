@@ -101,6 +101,7 @@ class Inference(Answer):
         """
         return tuple(self.each_inferred())
 
+    @checks_arguments
     def derive(self, relation: Relation, subject: str, thing: str) -> Derivation | None:
         """Return a derivation of a fact from stated facts and claims, or None if it does not follow.
 

@@ -205,8 +205,7 @@ def spoken_name(text: str) -> SpokenName | None:
     from deixis.grammar.english.tree import Mood
 
     plain = re.sub(r"\b(is|are|'s) (?:called|named|known as)\b", r"\1", text)
-    corrects = re.match(r"\s*(?:no|wrong|sorry)\b[\s,:;.!-]*", plain, re.IGNORECASE)
-    plain = plain[corrects.end() :] if corrects else plain
+    plain, corrects = without_correction(plain)
     if not plain.strip():
         return None
     for sentence in parse_english(plain):
@@ -216,11 +215,33 @@ def spoken_name(text: str) -> SpokenName | None:
                 if predicate.relation == "kind" and demonstrated and clause.mood is Mood.STATEMENT:
                     noun = predicate.arguments[0].head
                     if noun:
-                        return SpokenName(noun, predicate.positive and clause.positive, corrects is not None)
+                        return SpokenName(noun, predicate.positive and clause.positive, corrects)
         phrase = sentence.fragment
         if phrase is not None and phrase.head and not phrase.predicates and sentence.words == sentence.words_understood:
-            return SpokenName(phrase.head, not phrase.negated, corrects is not None)
+            return SpokenName(phrase.head, not phrase.negated, corrects)
     return None
+
+
+def without_correction(text: str) -> tuple[str, bool]:
+    """Return a sentence without the word that corrects an earlier one, and whether it had one.
+
+    Parameters
+    ----------
+    text
+        English.
+
+    Returns
+    -------
+    tuple
+        The rest of the sentence, and True if it begins with *no*, *wrong* or *sorry*.
+
+    Examples
+    --------
+    >>> without_correction("No, that is a spoon.")
+    ('that is a spoon.', True)
+    """
+    found = re.match(r"\s*(?:no|wrong|sorry)\b[\s,:;.!-]*", text, re.IGNORECASE)
+    return (text, False) if found is None else (text[found.end() :], True)
 
 
 def pointed_label(
@@ -357,14 +378,14 @@ def taught_labels(labels: Sequence[PointedLabel], scene: Scene) -> tuple[tuple[P
     for place, label in enumerate(labels):
         if label.target is None or label.refused is not None or label.name is None:
             continue
-        naming = spoken_name(label.utterance.text)
+        corrects = without_correction(label.utterance.text)[1]
         for earlier in range(place):
             other = result[earlier]
             if other.target != label.target or other.refused is not None or other.name is None:
                 continue
             agreeing = lexicon.relation(label.name, other.name) in agree
             if (label.positive and other.positive and not agreeing) or (label.positive != other.positive and agreeing):
-                if naming is not None and naming.corrects:
+                if corrects:
                     result[earlier] = replace(other, refused=f"taken back at {label.utterance.at:g} s")
                     continue
                 who = "" if label.utterance.speaker == other.utterance.speaker else f" by {other.utterance.speaker}"

@@ -177,7 +177,7 @@ def track(
     Examples
     --------
     >>> from deixis.perception.simulator.laying import Placement
-    >>> from deixis.perception.simulator.films.motion import Rest, TakeAway, film
+    >>> from deixis.perception.simulator.films.stage import Rest, TakeAway, film
     >>> mug, plate = Placement("mug", "mug", 0.2, 0.0), Placement("plate", "dinner plate", -0.1, 0.0)
     >>> found = track(film([mug, plate], [Rest(0.3), TakeAway("mug"), Rest(1.2)]))
     >>> [thing.id for thing in found.things], [thing.id for thing in found.gone]

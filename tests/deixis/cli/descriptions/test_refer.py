@@ -26,6 +26,19 @@ def test_an_undecided_object_comes_with_a_question() -> None:
     assert "undecided" in out and "To ask: Is it" in out
 
 
+def test_the_object_is_drawn_in_its_scene(tmp_path: Path) -> None:
+    code, out, _ = deixis("refer", "the chair", STUDY, "--plot", tmp_path / "meant.svg")
+    assert code == 3
+    assert out.splitlines()[-1] == f"Written: {tmp_path / 'meant.svg'}"
+    assert "“the chair”" in (tmp_path / "meant.svg").read_text(encoding="utf-8")
+
+
+def test_teaching_an_adjective_draws_nothing(tmp_path: Path) -> None:
+    options = ("--picked", "o7", "--memory", tmp_path / "memory", "--plot", tmp_path / "meant.svg")
+    code, _, err = deixis("refer", "the chair", STUDY, *options)
+    assert code == 2 and "--picked excludes --plot" in err
+
+
 def test_an_oracle_answers_questions_in_json() -> None:
     code, out, _ = deixis("refer", "the chair", STUDY, "--oracle", "o9", "--json")
     answer = json.loads(out)

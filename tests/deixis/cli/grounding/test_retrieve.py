@@ -146,3 +146,9 @@ def test_python_retrieves_as_the_command_does(tmp_path: Path) -> None:
         by_script = package.retrieve(EXAMPLES / "formal_dinner.layout", memory=session)
     assert [(one.name, one.similarity) for one in by_script.found] == [("formal_dinner-1", 1.0)]
     assert by_script.found[0].matches["dinner_plate"] == "o8"
+
+
+def test_the_results_are_drawn_as_bars(tmp_path: Path) -> None:
+    code, out = run(SETTING, "--among", EXAMPLES, "--plot", tmp_path / "similar.svg")
+    assert (code, out.splitlines()[-1]) == (0, f"Written: {tmp_path / 'similar.svg'}")
+    assert "informal.layout" in (tmp_path / "similar.svg").read_text(encoding="utf-8")

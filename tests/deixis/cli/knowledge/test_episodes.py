@@ -99,3 +99,10 @@ def test_bad_input_is_explained(memory: Path, command: tuple[str, ...], message:
     code, _, error = deixis("episodes", *command)
     assert code == 2
     assert message in error
+
+
+def test_memories_without_episodes_are_asked_by_name(tmp_path: Path) -> None:
+    layout, scene = "examples/formal_dinner.layout", "examples/place_setting.scene.json"
+    assert deixis("learn", layout, scene, "--memory", tmp_path)[0] == 0
+    assert deixis("episodes", "memory", "semantic", "--memory", tmp_path)[1] == "layout formal_dinner\n"
+    assert deixis("episodes", "memory", "working", "--memory", tmp_path)[1] == "The working memory is empty.\n"

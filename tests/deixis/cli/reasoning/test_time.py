@@ -167,3 +167,9 @@ def test_an_incomplete_answer_exits_3_and_explains_stated_sets() -> None:
     assert "more may be certain" in out
     code, out, _ = deixis("time", "many.fluents.json", "--explain", "f1", "f0")
     assert (code, out.splitlines()[0]) == (3, "before or after(f1, f0)   by intersection")
+
+
+def test_the_times_are_drawn(here: Path) -> None:
+    code, out, _ = deixis("time", FILE, "--plot", "times.svg")
+    assert (code, out.splitlines()[-1]) == (0, "Written: times.svg")
+    assert "fetches(robot, cup)" in (here / "times.svg").read_text(encoding="utf-8")

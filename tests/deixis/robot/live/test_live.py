@@ -52,7 +52,9 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
     with live_robot(folder / "memory", story, lines.append, processes=request.param) as robot:
         assert robot.wait(120.0)
         robot.says("what did the teacher say?")
+        robot.says("which one did the teacher show you first")
         robot.says("t3 is a bowl.")
+        robot.says("t3 is a cup.")
         robot.says("t99 is a bowl.")
         assert robot.answered(60.0)
         write_story(robot, folder / "pictures")
@@ -88,6 +90,19 @@ def test_typed_words_and_ids_are_heard(ran: Ran) -> None:
     assert heard(ran, "robot: Teacher said", "This is a fork")
     assert heard(ran, "robot: I see: t3 is a bowl.")
     assert heard(ran, "there is no t99 on the table")
+
+
+def test_a_name_that_contradicts_an_earlier_one_is_refused(ran: Ran) -> None:
+    assert heard(ran, "note: 'cup' was not learned: contradicts 'bowl' of", "Is t3 bowl or cup?")
+
+
+def test_lines_of_the_conversation_are_in_order_of_time(ran: Ran) -> None:
+    times = [float(line.partition(" s  ")[0]) for line in ran.lines if " s  " in line]
+    assert len(times) > 10 and times == sorted(times)
+
+
+def test_recognised_questions_need_no_question_mark(ran: Ran) -> None:
+    assert heard(ran, "robot: Teacher showed the fork at")
 
 
 def test_words_that_were_hardly_recognised_are_asked_for_again(ran: Ran) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from types import SimpleNamespace
 from typing import Any
@@ -19,6 +20,7 @@ from deixis.memory.episodes.fluents.episode import episodic
 from deixis.memory.journal import write_together
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
+from deixis.reasoning.temporal.bounds import Bounds
 from deixis.workflows.knowledge.episodes import (
     Consistency,
     Consolidation,
@@ -69,7 +71,29 @@ def test_kinds_that_exclude_each_other_contradict() -> None:
     kinds = [episodic(f"f{n}", ("t1", "isA", kind), start=0.0, source=SEEN) for n, kind in enumerate(("fork", "plate"))]
     assert check_consistency(kinds[:1], default_ontology()).consistent
     found = check_consistency(kinds, default_ontology())
-    assert found.logical == ("the kinds and relations contradict the ontology: isA(t1, fork); isA(t1, plate)",)
+    assert found.logical == ("at 0 s: the kinds and relations contradict the ontology: isA(t1, fork); isA(t1, plate)",)
+
+
+def test_kinds_contradict_only_at_one_time_and_are_named() -> None:
+    names = (("t1", "fork", 0.0, 5.0), ("t1", "plate", 5.0, None), ("t2", "cup", 1.0, None), ("t3", "spoon", 1.0, None))
+    kinds = [
+        episodic(f"f{n}", (thing, "isA", kind), start=start, finish=finish, source=SEEN)
+        for n, (thing, kind, start, finish) in enumerate(names)
+    ]
+    assert check_consistency(kinds, default_ontology()).consistent
+    always = Bounds(-math.inf, math.inf)
+    plain = [
+        episodic(f"p{n}", ("t3", "isA", kind), start=always, source=SEEN) for n, kind in enumerate(("fork", "bowl"))
+    ]
+    found = check_consistency((*kinds[:2], *plain), default_ontology())
+    assert found.logical[0].endswith("contradict the ontology: isA(t3, bowl); isA(t3, fork)")
+
+
+def test_thing_is_listed_once_in_each_class(board: Blackboard) -> None:
+    for number, kind in enumerate(("fork", "fork")):
+        board.add(episodic(f"f{number}", ("t1", "isA", kind), start=0.0, source=SEEN), by="test")
+    found = {each.name: each.individuals for each in known_classes(board, default_ontology(), "fork")}
+    assert found["Fork"] == ("t1",)
 
 
 def test_classes_have_their_individuals_of_now(board: Blackboard) -> None:

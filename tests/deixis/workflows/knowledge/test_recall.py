@@ -39,6 +39,8 @@ def board() -> Iterator[Blackboard]:
             (("t1", "on", "t2"), 600, None, SEEN, 0.97),
             (("t2", "on", "table"), 10, None, SEEN, 1.0),
             (("t3", "right", "t2"), 20, Bounds(2000, 2010), SEEN, 1.0),
+            (("Ada", "pointedAt", "t1"), 0, 1, ADA, 0.99),
+            (("Bob", "noticed", "'mug' was not learned"), 5, None, BOB, 1.0),
             (("Ada", "said", "put the fork on the plate"), 590, 591, Source(Origin.SAID, "Ada", "sentence 1"), 1.0),
         ]
         for number, (said, start, finish, source, certainty) in enumerate(told):
@@ -67,6 +69,13 @@ NO_SPOON = "Not known: nothing on the blackboard is called 'spoon'; it has: cup,
         ("what was taken away since noon?", "The cup went between 12:03:20 and 12:03:30 (seen)."),
         ("what was taken away before noon?", "Not known: nothing is recorded as taken away for that time."),
         ("which one did I show you first?", "Ada showed the dinner fork at 11:30:00."),
+        ("who showed you the cup first?", "Bob showed the cup at 11:30:20."),
+        ("where was the cup?", CUP_THEN),
+        ("where was the fork?", f"The {FORK_NOW}"),
+        ("where did the cup go?", "Not known: the cup has been gone since 12:03:30."),
+        ("is the cup still there?", f"No: the {CUP_THEN[4:]}"),
+        ("how many things were taken away since noon?", "1: the cup."),
+        ("how long was the cup there?", CUP_THEN),
         ("what was the last thing Bob showed you?", "Bob showed the cup at 11:30:20."),
         ("what is on the plate now?", f"The {FORK_NOW}"),
         ("when did the cup go?", "The cup went between 12:03:20 and 12:03:30 (seen)."),
@@ -100,6 +109,7 @@ def test_questions_are_answered_with_times_and_sources(board: Blackboard, questi
 
 def test_a_speaker_can_be_named(board: Blackboard) -> None:
     assert recall("what did I show you first?", board, at=3600.0, speaker="bob").answer.startswith("Bob showed the cup")
+    assert recall("what was shown first?", board, at=3600.0, speaker="bob").answer.startswith("Ada showed the dinner")
 
 
 def test_an_empty_blackboard_knows_nothing() -> None:

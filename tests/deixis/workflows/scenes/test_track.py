@@ -9,7 +9,7 @@ from commands import deixis as deixis_command
 from schemas import errors_in
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.simulator.films.motion import Rest, TakeAway, film
+from deixis.perception.simulator.films.stage import Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.frames.frame import Frame
 from deixis.perception.tracking.frames.stream import recording

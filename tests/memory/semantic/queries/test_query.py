@@ -54,9 +54,9 @@ def test_the_copies_of_lessons_are_out_of_reach(taught: SemanticMemory) -> None:
     graphs = taught.query("SELECT DISTINCT ?g { GRAPH ?g { ?s ?p ?o } }")
     assert len(graphs.rows) == 6
     copy = "<https://w3id.org/deixis/graph/lesson/dinner-1/learned>"
-    assert taught.query(f"ASK {{ GRAPH {copy} {{ ?s ?p ?o }} }}").boolean is False
-    with pytest.raises(QueryError, match="does not have this graph"):
-        taught.query(f"ASK FROM {copy} {{ ?s ?p ?o }}")
+    for query in (f"ASK {{ GRAPH {copy} {{ ?s ?p ?o }} }}", f"ASK FROM {copy} {{ ?s ?p ?o }}"):
+        with pytest.raises(QueryError, match="does not have this graph"):
+            taught.query(query)
 
 
 def test_graphs_may_be_chosen_with_from(taught: SemanticMemory) -> None:
@@ -230,6 +230,43 @@ def test_an_error_points_at_the_place(memory: SemanticMemory, query: str, line: 
     assert head.startswith(f"query:{line}:{column}: ")
     assert shown.strip() == query.split("\n")[line - 1].strip()
     assert caret.expandtabs().index("^") == len(shown[: column + 1].expandtabs())
+
+
+@pytest.mark.parametrize(
+    ("query", "note"),
+    [
+        (
+            "ASK { lx:lesson\\/dinner-3 ?p ?o }",
+            "the memory has no 'lx:lesson\\/dinner-3'; did you mean 'lx:lesson\\/dinner-",
+        ),
+        ("ASK { ?s ?p <https://w3id.org/deixis/learned/zz> }", "the memory has no 'lx:zz'"),
+    ],
+)
+def test_a_learned_thing_that_is_unknown_is_noted(taught: SemanticMemory, query: str, note: str) -> None:
+    answer = taught.query(query)
+    assert answer.boolean is False
+    assert len(answer.notes) == 1 and answer.notes[0].startswith(note)
+
+
+@pytest.mark.parametrize("named", ["lx:lesson\\/dinner-1", "lx:lesson\\/", "lx:"])
+def test_known_things_and_beginnings_of_iris_have_no_note(taught: SemanticMemory, named: str) -> None:
+    query = f"SELECT ?s {{ GRAPH dxg:episodes {{ ?s a dx:Lesson FILTER(STRSTARTS(STR(?s), STR({named}))) }} }}"
+    answer = taught.query(query)
+    assert answer.rows and answer.notes == ()
+
+
+@pytest.mark.parametrize(
+    ("term", "hint"),
+    [
+        ("dxg:lerned", "dxg:learned"),
+        ("dxg:nows", "dxg:now"),
+        ("prov:wasDerivdFrom", "prov:wasDerivedFrom"),
+        ("dcterms:titel", "dcterms:title"),
+    ],
+)
+def test_a_misspelt_graph_or_standard_term_is_an_error(memory: SemanticMemory, term: str, hint: str) -> None:
+    with pytest.raises(QueryError, match=f"'{term}'; did you mean '{hint}'"):
+        memory.query(f"SELECT ?s {{ GRAPH ?g {{ ?s ?p {term} }} }}")
 
 
 @pytest.fixture

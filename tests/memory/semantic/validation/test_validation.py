@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pyoxigraph as ox
 import pytest
+import rdflib
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from rdflib.compare import isomorphic
 
 from deixis.errors import OntologyError
 from deixis.memory.errors import RejectedWriteError
@@ -20,7 +22,7 @@ from deixis.memory.semantic.rdf.package import SHAPES_FILE
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.memory.semantic.validation.compiled_shapes import compile_shapes, packaged_shapes
 from deixis.memory.semantic.validation.focus_data import FocusData
-from deixis.memory.semantic.validation.shacl import validate, violations
+from deixis.memory.semantic.validation.shacl import report_turtle, validate, violations
 from deixis.memory.semantic.validation.validate import check_change, report, touched
 
 Learn = Callable[..., None]
@@ -140,6 +142,24 @@ def test_values_that_cannot_be_compared_are_rejected(
     with pytest.raises(RejectedWriteError, match="cannot be compared: give numbers and times") as caught:
         memory.learn("two", {GraphName.ASSERTED: words}, [])
     assert {result.focus for result in caught.value.results} == {"lx:scene/s1/o1", "lx:scene/s1/o2"}
+
+
+def test_the_text_of_a_report_depends_on_its_content_only() -> None:
+    lines = [
+        "_:all a sh:ValidationReport ; sh:result _:first, _:second, _:third .",
+        "_:second sh:focusNode <urn:b> ; sh:sourceShape _:shape ; sh:value 2 .",
+        "_:first sh:focusNode <urn:a> ; sh:sourceShape _:shape ; sh:value 1 .",
+        "_:third sh:focusNode <urn:a> ; sh:sourceShape _:twin .",
+        "_:shape sh:path [ sh:inversePath <urn:p> ] ; sh:in ( 1 2 ) .",
+        "_:twin sh:path [ sh:inversePath <urn:p> ] ; sh:not _:shape . _:shape sh:not _:twin .",  # a circle
+    ]
+    texts = []
+    for told in (lines, lines[::-1]):
+        named = "\n".join([f"@prefix sh: <{SH}> .", *told])
+        texts.append(report_turtle(rdflib.Graph().parse(data=named, format="turtle")))
+    assert texts[0] == texts[1]
+    assert texts[0].index("urn:a") < texts[0].index("urn:b")
+    assert isomorphic(*(rdflib.Graph().parse(data=text, format="turtle") for text in (texts[0], named)))
 
 
 def test_warnings_do_not_reject(memory: SemanticMemory, read: Read) -> None:

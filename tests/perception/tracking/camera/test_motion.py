@@ -8,7 +8,8 @@ import pytest
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.simulator.cameras.camera import Camera, looking_pose
 from deixis.perception.simulator.films.camera_paths import CameraPath, HeadMotion, Walk
-from deixis.perception.simulator.films.motion import FilmedFrame, Move, Rest, film
+from deixis.perception.simulator.films.film import FilmedFrame
+from deixis.perception.simulator.films.stage import Move, Rest, film
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.camera.motion import moved_by
 from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view

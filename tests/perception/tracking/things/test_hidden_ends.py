@@ -78,6 +78,24 @@ def test_thing_does_not_go_on_into_another_one() -> None:
     assert after == pytest.approx(0.04, abs=0.006)
 
 
+def bent(knife: Pipeline, across: float) -> Pipeline:
+    """Return a knife whose last centimetre is beside the middle of its box."""
+    last = knife.cloud.points[:, 0] > knife.oriented.extents[0] / 2 - 0.01
+    knife.cloud.points[last, 1] = across
+    return knife
+
+
+def test_bent_thing_goes_on_where_its_end_is() -> None:
+    beside = table_with(slice(50, 66))
+    beside.depth[29:33, 50:66], beside.owner[29:33, 50:66] = 1.0, 0  # the table is seen beyond the middle of its box
+    assert hidden_lengths(box_of(*KNIFE, 1, 0.01), [], beside, VIEW)[1] == 0.0
+    _, after = hidden_lengths(bent(box_of(*KNIFE, 1, 0.01), 0.009), [], beside, VIEW)
+    assert after == pytest.approx(0.08, abs=0.006)
+    hidden = table_with(slice(50, 66))
+    hidden.depth[26:29, 50:66], hidden.owner[26:29, 50:66] = 1.0, 0  # the table is seen beyond its end alone
+    assert hidden_lengths(bent(box_of(*KNIFE, 1, 0.01), 0.009), [], hidden, VIEW)[1] == 0.0
+
+
 def test_only_long_flat_things_go_on() -> None:
     for thing in (box_of(46, 50, 1, 0.01), box_of(*KNIFE, 1, 0.1)):
         assert hidden_lengths(thing, [], table_with(slice(50, 66)), VIEW) == (0.0, 0.0)

@@ -1,23 +1,11 @@
-"""Films: where things truly are while a hand moves them, and what the camera sees of them."""
-
-from itertools import islice
+"""The stage: where things truly are while a hand moves them."""
 
 import numpy as np
 import pytest
 
 from deixis.perception.errors import SimulationError
-from deixis.perception.simulator.films.camera_paths import HeadMotion, Walk
-from deixis.perception.simulator.films.motion import (
-    Bring,
-    Film,
-    Move,
-    PassOver,
-    Rest,
-    TakeAway,
-    film,
-    laying_film,
-)
-from deixis.perception.simulator.films.stories import random_film
+from deixis.perception.simulator.films.film import Film
+from deixis.perception.simulator.films.stage import Bring, Move, Rest, TakeAway, film, laying_film
 from deixis.perception.simulator.laying import Placement, lay
 
 PLATE = Placement("plate", "dinner plate", 0.0, 0.0, seed=1)
@@ -73,53 +61,6 @@ def test_taken_thing_goes_and_brought_thing_comes() -> None:
     story = film([PLATE, MUG], [TakeAway("mug"), Bring(FORK), Rest(0.1)])
     assert set(story.poses(0.0)) == {"plate", "mug"}
     assert set(story.poses(story.seconds)) == {"plate", "fork"}
-
-
-def test_passing_hand_hides_a_thing_for_two_seconds() -> None:
-    story = film([PLATE, MUG], [Rest(0.2), PassOver(0.25, 0.2), Rest(0.2)])
-    frames = list(story.frames(5, scale=0.3))
-    shown = [frame.things[1].points for frame in frames]
-    hidden = [points < 0.5 * shown[0] for points in shown]
-    assert sum(hidden) >= 9 and not any(frame.things[1].held for frame in frames)
-    assert shown[-1] > 0.9 * shown[0] and frames[-1].hand_points == 0
-
-
-def test_equal_seeds_give_equal_clouds() -> None:
-    stories = [random_film(3, 2, seed=4) for _ in range(2)]
-    one, other = (list(islice(story.frames(2, seed=5, scale=0.25), 8)) for story in stories)
-    assert all(np.array_equal(a.cloud.points, b.cloud.points, equal_nan=True) for a, b in zip(one, other, strict=True))
-    again = next(stories[0].frames(2, seed=6, scale=0.25))
-    assert not np.array_equal(again.cloud.points, one[0].cloud.points, equal_nan=True)
-
-
-def test_true_box_holds_the_points_of_its_thing() -> None:
-    story = film([PLATE, MUG], [Move("mug", -0.3, 0.05, 1.0)], path=HeadMotion(seed=2))
-    for frame in islice(story.frames(3, scale=0.3), 3, 9):
-        cloud = frame.cloud
-        assert cloud.labels is not None
-        for thing in frame.things:
-            points = frame.camera.to_table(cloud.points[cloud.labels == thing.label].astype(float))
-            assert (points >= thing.box[0] - 0.02).all() and (points <= thing.box[1] + 0.02).all()
-
-
-def test_camera_of_a_head_moves_slowly() -> None:
-    story = film([PLATE], [Rest(3.0)], path=HeadMotion(seed=1))
-    eyes = np.array([frame.camera.eye for frame in story.frames(5, scale=0.05)])
-    steps = np.linalg.norm(np.diff(eyes, axis=0), axis=1)
-    assert 0 < steps.max() < 0.05 and np.ptp(eyes, axis=0).max() > 0.01
-
-
-def test_walking_camera_looks_at_one_place_from_one_distance() -> None:
-    camera = film([PLATE], [Rest(1.0)]).camera
-    walk = Walk(np.pi / 2, 4.0, sway=None)
-    ahead = camera.pose[:3, 2]
-    middle = camera.eye - ahead * camera.eye[2] / ahead[2]
-    for at in (0.0, 1.0, 2.5, 4.0, 8.0):
-        walked = walk.moved(camera, at)
-        away = np.linalg.norm(walked.eye - middle)
-        assert walked.eye + away * walked.pose[:3, 2] == pytest.approx(middle, abs=1e-9)
-        assert away == pytest.approx(np.linalg.norm(camera.eye - middle))
-    assert walk.moved(camera, 8.0).pose == pytest.approx(camera.pose)
 
 
 def test_laying_film_ends_with_the_laid_table() -> None:

@@ -1,75 +1,15 @@
 """Completion of things: parts behind others, pieces of one thing, thin ends, and sides that come into view."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
+from flat_tables import BLUE, KNIFE, OPTICS, SHADED, SHAPE, STEEL, WHITE, WOOD, Table, lay, table, thing_at, view
 
-from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
-from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, table_view
+from deixis.perception.tracking.frames.image import FrameImage
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
-from deixis.perception.tracking.things.completion import (
-    FlatThing,
-    floating_parts,
-    revealed_part,
-    stands_behind,
-    supporting_parts,
-)
+from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER
+from deixis.perception.tracking.things.missing_parts import FlatThing, revealed_part
 from deixis.perception.tracking.things.pipeline import Pipeline
-
-SHAPE = 60, 120
-OPTICS = Optics(np.array([[200.0, 0, 59.5], [0, 200.0, 29.5], [0, 0, 1]]), np.zeros(3))
-BACK = np.diag([1.0, -1.0, -1.0, 1.0])
-BACK[2, 3] = 1.0  # the camera is one metre above the table and looks down: a pixel is 5 mm
-WOOD, STEEL, BLUE = (140, 105, 73), (190, 190, 195), (40, 60, 160)
-WHITE, SHADED = (235, 230, 225), (215, 210, 205)
-KNIFE = np.s_[29:32, 20:80]
-"""Pixels of a knife of 30 cm that lies along a row."""
-
-
-@dataclass
-class Table:
-    """Table from above, on which flat patches lie; their owners are numbers from 1."""
-
-    owner: np.ndarray
-    depth: np.ndarray
-    colour: np.ndarray
-
-    @property
-    def reference(self) -> Reference:
-        points = np.zeros((*SHAPE, 3), np.float32)
-        return Reference(FrameImage(points, self.depth, self.colour, OPTICS), self.owner.copy(), 0.0)
-
-
-def table() -> Table:
-    return Table(
-        np.zeros(SHAPE, np.int16), np.ones(SHAPE, np.float32), np.broadcast_to(WOOD, (*SHAPE, 3)).astype(np.float32)
-    )
-
-
-def lay(on: Table, pixels: tuple[slice, slice], colour: tuple[int, int, int], owner: int, height: float = 0.0) -> None:
-    on.owner[pixels], on.depth[pixels], on.colour[pixels] = owner, 1.0 - height, colour
-
-
-def view() -> TableView:
-    return table_view(OPTICS, BACK, SHAPE)
-
-
-def thing_at(pixels: tuple[slice, slice], slot: int, colour: tuple[int, int, int] = STEEL) -> Pipeline:
-    """Return a thing of 1 cm height that covers some pixels."""
-    rows, columns = np.mgrid[pixels]
-    plan = np.stack([(columns - 59.5) / 200, -(rows - 29.5) / 200], axis=-1).reshape(-1, 2)
-    low, high = plan.min(axis=0) - 0.0025, plan.max(axis=0) + 0.0025
-    middle = np.append((low + high) / 2, 0.005)
-    points = np.column_stack([plan, np.full(len(plan), 0.005)]) - middle
-    pose = np.eye(4)
-    pose[:3, 3] = middle
-    length, width = (high - low).tolist()
-    cloud = PointCloud(points.astype(np.float32), np.tile(np.array(colour, np.uint8), (len(points), 1)))
-    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (length, width, 0.01))
-    return Pipeline(f"t{slot}", slot, cloud, np.array([length, width, 0.01]) / 2, box, pose, 0.0, TrackingSettings())
 
 
 def flat(thing: Pipeline, on: Table, now: Table | None = None, views: int = 0) -> FlatThing:
@@ -154,19 +94,6 @@ def test_piece_within_the_box_of_a_thing_may_be_larger_in_view() -> None:
     blade = thing_at(np.s_[29:32, 40:60], 2)
     assert flat(thing_at(np.s_[29:32, 30:55], 1), on).pieces([blade]) == []
     assert flat(thing_at(np.s_[29:32, 30:62], 1), on).pieces([blade]) == [blade]
-
-
-@pytest.mark.parametrize(("colour", "above", "aside", "is_one"), [
-    (BLUE, 0.1, 0.0, True), (STEEL, 0.1, 0.0, False), (BLUE, 0.01, 0.0, False), (BLUE, 0.1, 0.1, False),
-])  # fmt: skip
-def test_stem_and_foot_are_parts_of_the_bowl_above(
-    colour: tuple[int, int, int], above: float, aside: float, is_one: bool
-) -> None:
-    bowl, foot = thing_at(np.s_[20:40, 50:70], 1, BLUE), thing_at(np.s_[22:38, 52:68], 2, colour)
-    bowl.pose = bowl.pose.copy()
-    bowl.pose[:3, 3] += aside, 0.0, above
-    assert supporting_parts(bowl, [foot]) == ([foot] if is_one else [])
-    assert supporting_parts(foot, [bowl]) == []
 
 
 @pytest.mark.parametrize("is_edge", [False, True])
@@ -257,21 +184,6 @@ def test_shaded_wall_of_a_plate_does_not_continue_a_spoon() -> None:
     assert not len(flat(thing_at(np.s_[29:32, 30:62], 1), on).missing_part())
 
 
-@pytest.mark.parametrize(("is_hidden", "stands"), [(True, True), (False, False)])
-def test_thing_with_a_hidden_foot_stands_on_the_table(is_hidden: bool, stands: bool) -> None:
-    on, glass = table(), thing_at(np.s_[25:35, 55:65], 1, BLUE)
-    glass.pose = glass.pose.copy()
-    glass.pose[2, 3] = 0.2
-    glass.oriented = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.05, 0.05, 0.06))
-    if is_hidden:
-        lay(on, np.s_[20:40, 50:70], STEEL, 2, 0.22)
-    image = FrameImage(np.zeros((*SHAPE, 3), np.float32), on.depth, on.colour, OPTICS)
-    assert stands_behind(glass, [glass], image, view()) == stands
-    glass.stand()
-    assert glass.pose[2, 3] == pytest.approx(0.115) and glass.oriented.extents[2] == pytest.approx(0.23)
-    assert not stands_behind(glass, [glass], image, view())
-
-
 def test_cutlery_side_by_side_is_not_in_pieces() -> None:
     on = table()
     lay(on, np.s_[29:32, 30:60], STEEL, 1)
@@ -302,42 +214,3 @@ def test_plate_that_comes_into_view_is_not_a_part_of_a_napkin() -> None:
     on.owner[25:40, 45:50] = 1  # of the plate, but within the margin of the napkin's box
     assert len(revealed_part(napkin, [], on.reference, view()))
     assert not len(revealed_part(napkin, [plate], on.reference, view()))
-
-
-@pytest.mark.parametrize(
-    ("lowest", "colour", "is_part"), [(0.02, STEEL, True), (0.0, STEEL, False), (0.02, BLUE, False)]
-)
-def test_handle_taken_for_a_thing_is_a_part_of_its_cup(
-    lowest: float, colour: tuple[int, int, int], is_part: bool
-) -> None:
-    z = np.arange(0.0, 0.08, 0.002)
-    angle = np.linspace(0, 2 * np.pi, 100)
-    body = np.array([(0.04 * np.cos(a), 0.04 * np.sin(a), h) for a in angle for h in z])
-    ear = np.array([(x, 0.0, h) for x in np.arange(0.042, 0.07, 0.002) for h in z if lowest <= h < 0.07])
-    cup, handle = (
-        Pipeline(
-            f"t{slot}", slot, PointCloud(points.astype(np.float32), np.full((len(points), 3), tint, np.uint8)),
-            np.array([0.04, 0.04, 0.04]), OrientedBox((0.0, 0.0, 0.04), 0.0, (0.08, 0.08, top)), np.eye(4), 0.0,
-            TrackingSettings(),
-        )
-        for slot, points, tint, top in ((1, body, STEEL, 0.08), (2, ear, colour, 0.07))
-    )  # fmt: skip
-    assert floating_parts(cup, [handle]) == ([handle] if is_part else [])
-    assert floating_parts(handle, [cup]) == []
-
-
-@pytest.mark.parametrize(("yaw", "half"), [(0.0, (0.058, 0.04)), (0.5, (0.054, 0.04))])
-def test_handle_that_comes_into_view_keeps_the_back(yaw: float, half: tuple[float, float]) -> None:
-    rng = np.random.default_rng(4)
-    angle, z = rng.uniform(np.pi, 2 * np.pi, 3000), rng.uniform(0.0, 0.1, 3000)
-    front = np.column_stack([0.04 * np.cos(angle), 0.04 * np.sin(angle), z])
-    body = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.08, 0.08, 0.1))
-    pose = np.eye(4)
-    pose[:2, :2], pose[2, 3] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]], 0.05
-    own = (front - pose[:3, 3]) @ pose[:3, :3]
-    cloud = PointCloud(own.astype(np.float32), np.full((len(front), 3), BLUE, np.uint8))
-    mug = Pipeline("t1", 1, cloud, np.array([0.04, 0.04, 0.05]), body, pose, 0.0, TrackingSettings())
-    handle = np.array([0.04, -0.004, 0.03]) + rng.uniform(0, [0.036, 0.008, 0.05], (300, 3))
-    mug.extend(handle, np.tile(BLUE, (300, 1)).astype(np.float32), TrackingSettings().detection.outlines)
-    assert mug.pose[:2, 3] == pytest.approx((0.018, 0.0), abs=0.003)
-    assert mug.half[:2] == pytest.approx(half, abs=0.003)

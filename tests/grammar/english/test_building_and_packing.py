@@ -1,0 +1,175 @@
+"""Facts of instructions to build, pack and set up things, and sentences in them that state none."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.grammar.english.reader import read_english
+from deixis.grammar.english.vocabulary.known_nouns import known_nouns
+from deixis.grammar.english.vocabulary.things import can_have_a_place
+from deixis.grammar.reading import Reading
+from deixis.ontology.tbox import default_ontology
+
+
+def read(text: str) -> Reading:
+    reading = read_english(text).reading
+    assert reading is not None
+    return reading
+
+
+def asserted(text: str) -> list[str]:
+    """Return the places that a text asserts, without counts, colours and contents."""
+    minor = ("count(", "colour(", "size(", "material(", "contents(", "kind(", "shape(", "state(")
+    return [str(f.content) for f in read(text).stated if f.asserted and not str(f.content).startswith(minor)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The lid is then placed on the pot.", ["on(lid, pot)"]),
+        ("The nurse then places the towel behind the box.", ["behind(towel, box)"]),
+        ("Put shredded bark around the fern.", ["around(bark, fern)"]),
+        ("Mounted lamps should be hung above the fern.", ["above(lamps, fern)"]),
+        ("Lay the cloth on the box, and lift and fold the corners over the dough.",
+         ["on(cloth, box)", "on(corners, dough)"]),
+        ("Make a thin layer of sand on the gravel.", ["on(sand, gravel)"]),
+        ("After oiling the hinge, replace the lid on the box.", ["on(lid, box)"]),
+        ("Replace the cup with a glass. The jug is on the box.", ["on(jug, box)"]),
+        ("In one corner place the dish and in the corner next to it put the bottle.",
+         ["corner(dish)", "corner(bottle)", "next_to(bottle, dish)"]),
+        ("Place the cup on the saucer and to the left of it put the spoon.",
+         ["on(cup, saucer)", "left(spoon, cup)"]),
+        ("Screwdrivers go in the drawer right beneath the lid.",
+         ["under(drawer, lid)", "inside(screwdrivers, drawer)"]),
+        ("Place the jar on a flat, stable slab.", ["on(jar, stable_slab)"]),
+        ("A probe and a mirror are commonly put on the cloth.", ["on(probe, cloth)", "on(mirror, cloth)"]),
+        ("Put the spears on the corresponding spaces.", ["on(spears, spaces)"]),
+        ("Your speaker should be above your wall display.", ["above(speaker, wall_display)"]),
+    ],
+)  # fmt: skip
+def test_commands_and_what_they_put(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("In the case of small jars, the lids are kept in the drawer.", ["inside(lids, drawer)"]),
+        ("In such a case, the boxes must not be next to the stove.", ["not next_to(boxes, stove)"]),
+        ("Broadly speaking, the fern should stand behind the moss.", ["behind(fern, moss)"]),
+        ("In lifting the drum, keep the sticks in the bag.", ["inside(sticks, bag)"]),
+        ("Put the brush on the jar and, working clockwise, lay the tiles around the drain.",
+         ["on(brush, jar)", "around(tiles, drain)"]),
+        ("Spread the mat behind the jug, ensuring the corners lie on the frame.", ["behind(mat, jug)"]),
+        ("Set the bell behind the jug, leaving the rope on the hook.", ["behind(bell, jug)", "on(rope, hook)"]),
+        ("The gongs are behind the harp and higher in tone than the bells.", ["behind(gongs, harp)"]),
+        ("Put small tools, such as awls, files and rasps, in the crate.", ["inside(tools, crate)"]),
+        ("Pack heavy things, like jars, tins and books, in the crate.", ["inside(things, crate)"]),
+        ("Line the crate with a soft liner, such as straw or wool.", ["inside(liner, crate)"]),
+        ("Put the tools that you use the most in the top drawer.", ["inside(tools, drawer)"]),
+        ("Lay the tokens beside the box, letter side up.", ["next_to(tokens, box)"]),
+        ("Set the rooks (the pieces that look like towers) on the corner squares.", ["on(rooks, corner_squares)"]),
+        ("Place a pot behind the jug to save potting mix.", ["behind(pot, jug)"]),
+        ("The king is next to the queen, followed by the rook, bishop and knight.",
+         ["next_to(king, queen)", "next_to(rook, king)", "next_to(bishop, rook)", "next_to(knight, bishop)"]),
+    ],
+)  # fmt: skip
+def test_phrases_beside_the_statement(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Use flat trays for nails and screws and keep them in the cabinet.", ["inside(trays, cabinet)"]),
+        ("Take your heavy tins and put them under the bed.", ["under(tins, bed)"]),
+        ("The sleeping bag goes into the bag.", ["inside(sleeping_bag, bag)"]),
+        ("The files hang in the top drawers, and the rulers go into the shallow drawer.",
+         ["inside(files, drawers)", "inside(rulers, drawer)"]),
+        ("The wine glasses stand behind the jug. The tall glass stands near the pot.",
+         ["behind(wine_glasses, jug)", "near(glass, pot)"]),
+        ("The paper napkins are behind the jug. Folded napkins are near the pot.",
+         ["behind(paper_napkins, jug)", "near(napkins, pot)"]),
+        ("Heaviest things should be kept in the middle of the crate.", ["middle(things, crate)"]),
+        ("The lid of the jar is behind the cup.", ["behind(lid, cup)"]),
+        ("The nurse should place the lid of the jar behind the cup.", ["behind(lid, cup)"]),
+        ("The lid of the box faces the wall.", ["facing(box, 'wall')"]),
+        ("The speakers stand at opposite ends of the rail.", ["end(speakers, rail)"]),
+        ("Put the 8' boards under the bed.", ["under(boards, bed)"]),
+    ],
+)  # fmt: skip
+def test_which_thing_of_several_is_meant(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Put the lamp on the desk next to the phone.", ["next_to(lamp, phone)", "on(lamp, desk)"]),
+        ("There is a vase on the shelf behind the books.", ["behind(vase, books)", "on(vase, shelf)"]),
+        ("Put the tray on the bench next to the sofa.", ["next_to(bench, sofa)", "on(tray, bench)"]),
+        ("Put the cup on the tray next to the jug. The pot is on the box.",
+         ["next_to(tray, jug)", "on(cup, tray)", "on(pot, box)"]),
+    ],
+)  # fmt: skip
+def test_places_beside_things_on_the_same_support(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("She suggested we put the lamp behind the sofa. The cup is on the box.", ["on(cup, box)"]),
+        ("Fix it by drilling two screws in the frame. The cup is on the box.", ["on(cup, box)"]),
+        ("Put the glass on the paper and wrap it around it.", ["on(glass, paper)"]),
+        ("One side has a lamp above or below the box. The cup is on the jar.", ["on(cup, jar)"]),
+        ("This light creates a glow behind the vase. The cup is on the jar.", ["on(cup, jar)"]),
+        ("Tools are kept in the highest drawers.", ["inside(tools, drawers)"]),
+        ("Turn the label away from you.", ["facing(label, 'away')"]),
+        ("The crate is bolted to the frame by a bracket.", ["touching(crate, frame)"]),
+        ("The towel is tucked behind the box by the nurse.", ["behind(towel, box)"]),
+        ("The cup is placed by the lamp.", ["near(cup, lamp)"]),
+        ("Put the cup behind the jug without placing the spoon next to it.", ["behind(cup, jug)"]),
+        ("The chest is behind the door, not covered by a cloth.", ["behind(chest, door)", "not on(cloth, chest)"]),
+        ("Put a three drawer unit behind the box.", ["behind(drawer_unit, box)"]),
+        ("Stand the lamp in front of the chair on the opposite side of the vase.",
+         ["opposite(lamp, vase)", "in_front(lamp, chair)"]),
+        ("Place the jar on a clean cloth with the inside facing up.", ["on(jar, cloth)", "facing(jar, 'up')"]),
+    ],
+)  # fmt: skip
+def test_words_that_state_no_place(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize("noun", ["enough water flow", "drilling two screws"])
+def test_amounts_and_acts_have_no_place(noun: str) -> None:
+    assert not can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+def test_states_of_what_is_to_be_done_are_not_stated() -> None:
+    reading = read("The jar stands on the box, which needs to be emptied. The pieces are known as pawns.")
+    assert [str(fact.content) for fact in reading.stated if fact.asserted] == ["on(jar, box)"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Place a spoon or a fork next to the plate.",
+        "A spoon or a fork lies next to the plate.",
+        "Cover the bowl with a cloth or a lid.",
+    ],
+)
+def test_things_joined_by_or_are_a_choice(text: str) -> None:
+    first, second = read(text).stated
+    assert first.alternative is not None
+    assert first.alternative == second.alternative
+    assert first.content.optional and second.content.optional
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Knives or scissors go into the drawer.", "Stones and/or a brick lie in the drawer.",
+     "A knife or a fork must not be in the drawer."],
+)  # fmt: skip
+def test_kinds_and_denials_joined_by_or_are_not(text: str) -> None:
+    assert all(fact.alternative is None for fact in read(text).stated)

@@ -1,0 +1,38 @@
+"""Things at rest: those that left their places, alone or with most others."""
+
+import pytest
+from first_looks import HALF, MUG, PLATE, FirstLook, first_look
+
+from deixis.perception.tracking.kernels import FARTHER, SAME
+from deixis.perception.tracking.table.observation import Observation
+from deixis.perception.tracking.table.reference import UNKNOWN_OWNER
+from deixis.perception.tracking.things.rest import has_left, is_laid_anew, look_at_resting
+
+pytest.importorskip("open3d")
+
+
+def seen_without(look: FirstLook, *slots: int) -> Observation:
+    """Return a frame that shows what is behind some things."""
+    seen = look.seen(0.1)
+    for slot in slots:
+        seen.changes.counts[slot, FARTHER] += seen.changes.counts[slot, SAME]
+        seen.changes.counts[slot, SAME] = 0
+    return seen
+
+
+def test_thing_whose_place_shows_the_table_moves() -> None:
+    look = first_look([PLATE, MUG])
+    plate, mug = look.things
+    seen = seen_without(look, mug.slot)
+    assert has_left(mug, seen.changes, HALF.moved) and not has_left(plate, seen.changes, HALF.moved)
+    look_at_resting(look.things, look.table, seen, HALF)
+    assert mug.active and not plate.active and plate.seen_at == 0.1 > mug.seen_at
+    assert not (look.table.reference.owner == mug.slot).any(), "its pixels are free"
+    assert (look.table.reference.owner == UNKNOWN_OWNER).any()
+
+
+@pytest.mark.parametrize(("count", "is_anew"), [(1, False), (2, True)])
+def test_table_is_laid_anew_if_most_things_left_at_once(count: int, is_anew: bool) -> None:
+    look = first_look([PLATE, MUG])
+    changes = seen_without(look, *range(1, count + 1)).changes
+    assert is_laid_anew(look.things.resting, changes, HALF.moved) == is_anew
