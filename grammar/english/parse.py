@@ -36,6 +36,7 @@ from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_nouns
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.tables import LITERAL
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.grammar.errors import ScriptTimeError
 from deixis.grammar.parsers import ParsedGrammar
 from deixis.ontology.tbox import Ontology, default_ontology
@@ -146,7 +147,9 @@ def _sentence(
     if cost and not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
         for verbs in possible_verbs(chunks, words, nouns):
             other, other_chunks = _parsed(text, raw, words, nouns, lead, verbs)
-            if _cost(other) + MIN_GAIN <= cost or (note and _cost(other) < cost and other.fragment is None):
+            clause = note and other.fragment is None
+            acts = clause and all(_is_only_verb(words[at].norm, nouns) for at in verbs)
+            if _cost(other) + MIN_GAIN <= cost or (clause and _cost(other) < cost + acts * (1 + MIN_GAIN)):
                 best, chunks, cost = other, other_chunks, _cost(other)
     if not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
         others = (
@@ -155,6 +158,12 @@ def _sentence(
         )
         best = settled(best, (other for other in others if _cost(other[0]) <= cost))
     return best
+
+
+def _is_only_verb(word: str, nouns: KnownNouns) -> bool:
+    """Return True for a verb in the third person that is not the plural of a noun: *burns* of *incense burns in it*."""
+    form = verb_forms().get(word)
+    return form is not None and form.form == "s" and not nouns.knows(nouns.singular(word)[0])
 
 
 def _cost(sentence: Sentence) -> int:

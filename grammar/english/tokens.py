@@ -641,6 +641,14 @@ def _says_no_place(words: str) -> bool:
     return "," in words and (prepositions().keys() | PRONOUNS.keys() | IS_FORMS).isdisjoint(said)
 
 
+def _without_labels_of_denials(found: list[Word]) -> None:
+    """Read *Don't: put salt on the rice* as a command that is denied."""
+    first = [word.norm for word in found[:3]]
+    colon = 2 if first[:2] == ["do", "not"] else 1 if first[:1] == ["never"] else 0
+    if colon and len(found) > colon + 1 and found[colon].norm == ":":
+        del found[colon]
+
+
 _INCH_MARKS = ('"', "\u2033", "\u201d")
 """Marks after a number of inches."""
 
@@ -710,6 +718,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     brackets = [i for i in range(ends) if found[i].norm in ("(", ")")]
     if brackets == [0, ends - 1]:
         del found[ends - 1], found[0]  # the whole sentence is in parentheses
+    _without_labels_of_denials(found)
     _join_asides(text, found)
     _read_hours(found)
     _read_levels(found)

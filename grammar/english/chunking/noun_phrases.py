@@ -96,8 +96,8 @@ class NounChunker(ModifierFinder):
                 and norms[i + 1] in ("left", "right")
                 and norms[i + 2] == "of"
             ):
-                phrase = NounPhrase(self._span(start, i + 1), "", "the", pronoun="other", negated=negated)
-                return i + 1, phrase, ()  # 'one left of the cross, the other right of it'
+                other = NounPhrase(self._span(start, i + 1), "", "the", pronoun="other", negated=negated)
+                return i + 1, other, ()  # 'one left of the cross, the other right of it'
             if norms[i] == "single" or (
                 norms[i] == "other" and determiner and not self._continues(i + 1) and self.number(i + 1) is None
             ):

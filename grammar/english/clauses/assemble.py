@@ -228,6 +228,9 @@ class Assembly:
                 group = replace(group, positive=False)
                 built = replace(built, verbs=(replace(built.verbs[0], group=group), *built.verbs[1:]))
             self.forbids = not group.positive
+            if built.shape == "other" and not group.positive and group.kind == "unknown":
+                misunderstood(span, f"'{group.lemma}' does not say where something is not")
+                return  # 'do not dip the bread in the oil'
         letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]
@@ -789,7 +792,7 @@ def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple
 
 
 def _with_own_aims(predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
-    """Return *on top of the fork facing left*, which is said of a spoon, with the aim as that of the spoon."""
+    """Return *on top of the fork facing left*, with the aim as that of the spoon on it."""
     last = predicates[-1]
     if len(last.arguments) != 1 or last.relation not in ("on", "above", "next_to", "under") or last.reversed:
         return predicates

@@ -30,9 +30,11 @@ from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PUT_VERBS
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
 _STORING = word_set(
-    "shelf drawer rack cupboard cabinet basket bin compartment crate locker tier pocket box hook peg closet wardrobe"
+    "shelf drawer rack cupboard cabinet basket bin compartment crate locker tier pocket hook peg closet wardrobe"
 )
 """Places of which *for* tells what is kept in them: *the top shelf is for glasses*."""
+_RESERVING = frozenset({"use", "reserve", "keep", "save", "dedicate"})
+"""Commands whose object with *for* tells what is kept in it."""
 _RESERVED = frozenset({"dedicated", "dedicate", "reserved", "reserve", "meant", "mean", "intended", "intend"})
 """Participles before *for* and *to* that tell what a place is for."""
 _LENGTHS = UNITS.keys() - word_set("hand finger thumb palm fist arm") | {"inche", "square"}
@@ -378,7 +380,7 @@ def _without_openings(chunks: list[Chunk]) -> list[Chunk]:
     first = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
     if len(chunks) < first + 3 or chunks[first + 2].type != "NP":
         return chunks
-    opening, verb, thing = chunks[first : first + 3]
+    opening, verb = chunks[first : first + 2]
     group = verb.value if isinstance(verb.value, VerbGroup) else None
     if group is None or not group.positive or group.past:
         return chunks
@@ -386,10 +388,9 @@ def _without_openings(chunks: list[Chunk]) -> list[Chunk]:
     clause = type_at(chunks, first + 3) in FINITE
     if pointed and group.lemma == "mean" and group.modal is None and clause:
         return chunks[first + 2 :]
-    adjectives = opening.value if opening.type == "ADJP" else ()
-    word = opening.value.head if opening.type == "NP" else opening.value
-    word = adjectives[0].word if len(adjectives) == 1 else word
-    if word != "next" or opening.end != opening.start + 1 or group.lemma not in ("be", "come"):
+    words = [a.word for a in opening.value] if opening.type == "ADJP" else [opening.value]
+    words = [opening.value.head] if opening.type == "NP" else words
+    if words != ["next"] or opening.end != opening.start + 1 or group.lemma not in ("be", "come"):
         return chunks
     placed = any(chunk.type in _PREDICATES for chunk in chunks[first + 3 :])
     command = VerbGroup("place", "posture", "base") if placed else VerbGroup("take", "other", "base")
@@ -418,6 +419,8 @@ def _with_purposes_of_places(chunks: list[Chunk]) -> list[Chunk]:
 def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     chunks = [chunk for chunk in whole if chunk.type != "ADVERB"]
     first = next((i for i, chunk in enumerate(chunks) if chunk.type not in ("CUT", "COMMA")), 0)
+    if chunks and chunks[first].type in ("PUT", "DO", "FIND") and chunks[first].value.lemma in _RESERVING:
+        return _with_reserved_places(chunks, first) or whole
     types = [type_at(chunks, first + k) for k in range(4)]
     told = types[2] == "PART" and chunks[first + 2].value.lemma in _RESERVED
     at = first + 2 + told
@@ -430,12 +433,41 @@ def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     noun = last_word(place.value.head)
     single = not (place.value.plural or be.value.modal or not be.value.positive)
     fits = relator.preposition.phrase == "for" or (told and relator.preposition.phrase == "to")
-    named = bool(thing.head) and last_word(thing.head) not in PEOPLE and not thing.pronoun
+    named = _names_things(thing)
     if not (single and fits and named and noun in _STORING and type_at(chunks, end) in _ENDS):
         return whole
     inside = noun in VESSELS | HOLDERS
     spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
     return [*chunks[:first], *chunks[at + 1 : end], be, replace(chunks[at], value=spot), place, *chunks[end:]]
+
+
+def _names_things(phrase: NounPhrase) -> bool:
+    """Return True for *cups* and *the bread*, but not for *transport*, which may be an act, nor for persons."""
+    thing = bool(phrase.head) and last_word(phrase.head) not in PEOPLE and not phrase.pronoun
+    return thing and (phrase.plural or phrase.determiner == "the" or phrase.owner is not None)
+
+
+def _with_reserved_places(chunks: list[Chunk], at: int) -> list[Chunk] | None:
+    """Return *use the upper rack for cups and the lower rack for plates* as *put cups in the upper rack and …*."""
+    if not chunks[at].value.positive:
+        return None
+    made: list[Chunk] = [*chunks[:at], replace(chunks[at], type="PUT", value=VerbGroup("put", "posture", "base"))]
+    at += 1
+    while [type_at(chunks, at + k) for k in range(3)] == ["NP", "PREP", "NP"]:
+        place, relator, thing = chunks[at].value, chunks[at + 1].value, chunks[at + 2].value
+        noun = last_word(place.head)
+        kept = _names_things(thing) and not place.plural
+        if relator.preposition.phrase != "for" or noun not in _STORING or not kept:
+            return None
+        inside = noun in VESSELS | HOLDERS
+        spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
+        made += [chunks[at + 2], replace(chunks[at + 1], value=spot), chunks[at]]
+        at += 3
+        if type_at(chunks, at) not in ("AND", "COMMA") or type_at(chunks, at + 1) != "NP":
+            return [*made, *chunks[at:]] if type_at(chunks, at) in _ENDS else None
+        made.append(chunks[at])
+        at += 1
+    return None
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
@@ -548,7 +580,16 @@ def _infinitive(chunks: list[Chunk], at: int) -> _Run | None:
     """Find an infinitive with what belongs to it: *the bottle is too tall to stand on the shelf*."""
     chunk = chunks[at]
     to = chunk.type == "UNKNOWN" and chunk.value == "to" and type_at(chunks, at + 1) in ("UNKNOWN", "VERB", "TVERB")
-    return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES | {"REL"})) if to else None
+    end = end_before(chunks, at, JOINT_TYPES | {"REL"})
+    while to and [type_at(chunks, end + k) for k in (-1, 0, 1)] == ["NP", "OR", "NP"] and _is_bare(chunks[end + 1]):
+        end = end_before(chunks, end + 1, JOINT_TYPES | {"REL"})  # 'to spread jam or butter on bread'
+    return _unknown(chunks, at, end) if to else None
+
+
+def _is_bare(chunk: Chunk) -> bool:
+    """Return True for a noun phrase without an article, an owner and a number."""
+    phrase = chunk.value
+    return bool(phrase.head) and phrase.determiner is None and phrase.owner is None and phrase.count is None
 
 
 def _stranded(chunks: list[Chunk], at: int) -> _Run | None:

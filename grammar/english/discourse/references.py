@@ -70,6 +70,8 @@ _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
 _LASTING = frozenset({"colour", "material", "contents", "ordinal"})
 """Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
+_OWN = frozenset({"size", "height", "length", "width", "thickness", "colour", "material", "shape"})
+"""Dimensions of adjectives that are true of one thing of a kind."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
 _COMPASS = frozenset({"north", "south", "east", "west"})
@@ -406,6 +408,8 @@ class References:
                 coloured & leaf.adjectives for leaf in entity.leaves()
             ):  # fmt: skip
                 continue  # 'the white pieces' after '12 pieces'
+            if _is_one_of_a_kind(phrase, entity):
+                continue
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
             bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
@@ -858,9 +862,10 @@ class References:
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
         last = self.recent[0] if self.recent else None
-        named = last.subject if last is not None and last.relation is None and not last.others else None
-        if named is not None and named.members and not named.noun and relation is None and besides is None:
-            return named  # 'next is the cup and saucer. It goes …'
+        listed_last = last.subject if last is not None and last.relation is None and not last.others else None
+        pair = listed_last is not None and bool(listed_last.members) and not listed_last.noun
+        if pair and relation is None and besides is None:
+            return listed_last  # 'next is the cup and saucer. It goes …'
         parallel = last is not None and self.holder in ("inside", "on") and last.relation == self.holder
         if last is not None and parallel and relation != "under":
             held = last.others if last.sentence == self.sentence and last.subject is not besides else []
@@ -1031,6 +1036,13 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
         return True  # but 'the left panel' is one of the side panels
     several = entity.members or entity.plural or entity.group is not None
     return not several or (any(d == "colour" for d, _ in distinguishing) and not phrase.plural)
+
+
+def _is_one_of_a_kind(phrase: NounPhrase, entity: Entity) -> bool:
+    """Return True for *the large knife* after *knives*: one of them, of which the adjective is true."""
+    kind = entity.plural and not (entity.single or entity.members) and not phrase.plural and phrase.determiner == "the"
+    told = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN and a.dimension in _OWN}
+    return kind and bool(told) and not told & entity.adjectives
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:

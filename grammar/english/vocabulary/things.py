@@ -108,7 +108,8 @@ _ONLY_VERBS = word_set(
 )
 """Verbs that are not the names of things, as *hold* and *keep* are."""
 _PARTICIPLES = word_set(
-    "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using moving including having"
+    "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
+    " moving including having"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
 _OF_CLAUSES = (

@@ -74,7 +74,8 @@ other: catch catches caught caught catching, break breaks broke broken breaking,
 other: hear hears heard heard hearing
 other: pay pays paid paid paying, light lights lit lit lighting, shut shuts shut shut shutting
 other: split splits split split splitting, feed feeds fed fed feeding, dig digs dug dug digging
-other: spoil, expire, perish, rot, wilt, melt, freeze freezes froze frozen freezing, strike strikes struck struck striking, win wins won won winning
+other: flow, drip, trickle, spoil, expire, perish, rot, wilt
+other: melt, freeze freezes froze frozen freezing, strike strikes struck struck striking, win wins won won winning
 other: shake shakes shook shaken shaking, spin spins spun spun spinning, cut cuts cut cut cutting
 other: pick, pluck, trap, squash, reach, arrive, enjoy, own, own, wish, decide, belong, blow blows blew blown blowing
 posture: ride rides rode ridden riding, rise rises risen risen rising, languish, lurk, bask, recline, jostle, flutter
@@ -223,7 +224,7 @@ def verb_forms() -> dict[str, VerbForm]:
 
 
 _ONLY_PARTICIPLES = word_set(
-    "draw sink wind drive sling snap loop burn bundle dump paste plaster stencil deposit clip clamp ring tower string"
+    "draw sink wind drive sling snap loop bundle dump paste plaster stencil deposit clip clamp ring tower string"
     " range coil slip lower fill stow plant heap spoon load"
     " thread pack feed scoop dot ladle stretch swing"
     " pop plump dab smear hammer tap staple stitch peg latch dock hitch cap crown ring light cut split shut catch break"
