@@ -56,10 +56,10 @@ UNLEARN = "unlearn"
 class Selection:
     """Choice of what to take back. A lesson or a teaching of a view is taken back if all given parts hold of it.
 
-    ``lesson`` selects a lesson, and what it taught; ``sentence`` selects lessons and names of things in these words, and
-    this sentence of the other lessons that have it, with all that came only from it; ``label`` and ``view`` select what a
-    person taught about views. ``table`` is a scene, or the name of its file. ``since`` is the first moment and ``until``
-    the first moment after the last one, both with a time zone.
+    ``lesson`` selects a lesson, and what it taught; ``sentence`` selects lessons and names of things in these words,
+    and this sentence of the other lessons that have it, with all that came only from it; ``label`` and ``view`` select
+    what a person taught about views. ``table`` is a scene, or the name of its file. ``since`` is the first moment and
+    ``until`` the first moment after the last one, both with a time zone.
     """
 
     lesson: str | None = None
