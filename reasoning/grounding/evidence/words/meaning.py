@@ -290,7 +290,14 @@ class Meaning(Answer):
 
     @property
     def models_in_force(self) -> RelationModels:
-        """Models of the relation words, which are the shipped ones if ``models`` is None."""
+        """Models of the relation words, which are the shipped ones if ``models`` is None.
+
+        Examples
+        --------
+        >>> meaning = Meaning()
+        >>> meaning.models is None, sorted(meaning.models_in_force.models)[:2]
+        (True, ['adjacency', 'alignment'])
+        """
         return self.models or shipped_models()
 
 
