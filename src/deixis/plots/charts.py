@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deixis.errors import DeixisError
@@ -57,7 +58,7 @@ def retrieval_figure(found: Retrieval, axes: Axes | None = None) -> Figure:
     axes.axvline(found.least, color=INK, linewidth=0.8, linestyle=":")
     axes.set_xlim(0.0, 1.15)
     _dress_rows(axes, [one.name for one in shown])
-    dress_chart(axes, f"results similar to {found.query}", "similarity; dotted: the least that counts")
+    dress_chart(axes, f"results similar to {Path(found.query).name}", "similarity; dotted: minimum of a result")
     return figure
 
 
