@@ -219,7 +219,7 @@ def hard_cases(count: int, compared: dict[str, Method]) -> None:
                 len(matched(labels, _truth(case.cloud), case.wanted))
                 for case, (labels, _, _) in zip(cases, looks, strict=True)
             )
-            slowest = max(taken for _, _, taken in looks)
+            slowest = max((taken for _, _, taken in looks), default=0.0)
             line += f"{found:9}/{sum(len(case.wanted) for case in cases):<4} {slowest:5.2f} s"
         print(line, flush=True)
 
