@@ -215,6 +215,8 @@ class FixedPhraseChunker(JointChunker):
             form = self._verbs.get(self.norms[at + 2])
             if form is not None and form.form == "ing" and form.lemma in PUT_VERBS:
                 return Chunk("PUT", at, at + 3, VerbGroup(form.lemma, "posture", "base"))  # 'begin by placing the cup'
+        if previous_joint and (advice := self._advice(at)) is not None:
+            return advice
         if (
             norm in _PARTICLES
             and self.norms[at + 1] in ("on", "at", "with", "by")
@@ -431,12 +433,26 @@ class FixedPhraseChunker(JointChunker):
             return None
         return end + 1
 
+    def _advice(self, at: int) -> Chunk | None:
+        """Return the command of *I recommend placing it there*, *consider putting it there*."""
+        i, positive, verbs = at, True, _TRYING
+        if self.norms[at] in ("i", "we"):
+            i, verbs = at + 1, _RECOMMENDING
+            while self.norms[i] in ADVERBS | NEGATIONS | _RECOMMENDED_SO:
+                positive = positive and self.norms[i] not in NEGATIONS
+                i += 1
+        form = self._verbs.get(self.norms[i + 1]) if self.norms[i] in verbs else None
+        placed = form is not None and form.form == "ing" and (form.lemma in PUT_VERBS or form.lemma == "use")
+        if form is None or not placed or not self.nouns.starts(i + 2):
+            return None
+        return Chunk("PUT", at, i + 2, VerbGroup(form.lemma, "posture", "base", positive=positive))
+
     def _is_told_to(self, at: int) -> bool:
         """Return True if the words before an infinitive make it a command: *remember to put*, not *afraid to put*."""
         i = at - 1
         while i > 0 and (self.norms[i] in ADVERBS or self.norms[i] in HEDGES):
             i -= 1
-        if self.norms[i] in _GOVERNORS:
+        if self.norms[i] in _GOVERNORS or (self.norms[i] == "sense" and self.norms[i - 1] in _SENSIBLE):
             return True
         first = next((k for k in range(len(self.chunks) - 1, -1, -1) if self.chunks[k].type in JOINT_TYPES), -1)
         if self._previous() == "NP" and any(c.type in ("PUT", "DO", "FIND") for c in self.chunks[first + 1 :]):
@@ -631,9 +647,19 @@ _STEPS = word_set("first second third next last lastly finally")
 _GOVERNORS = word_set(
     "remember sure forget need needs have has had got important essential necessary vital crucial best better good"
     " helpful useful advisable advised recommended time ready proceed continue begin start care careful required want"
-    " is are step idea convenient wise sensible"
+    " is are step idea convenient wise sensible helps pays"
 )
 """Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
+
+_SENSIBLE = word_set("make makes good more most perfect")
+"""Words before *sense* with which an infinitive is advised: *it makes sense to keep it there*."""
+
+_RECOMMENDING = frozenset({"recommend"})
+"""Verbs of writers whose *-ing* form is a command, unlike that of *suggest*: *we recommend placing it there*."""
+_RECOMMENDED_SO = word_set("do would 'd also highly strongly always really")
+"""Words between a writer and what is recommended."""
+_TRYING = word_set("consider try recommend")
+"""Verbs of commands whose *-ing* form is the command: *try placing it there*."""
 
 _USERS = word_set("you we they i people guests everyone")
 """Subjects of relative clauses that tell who uses a thing."""

@@ -37,7 +37,9 @@ _RESERVING = frozenset({"use", "reserve", "keep", "save", "dedicate"})
 """Commands whose object with *for* tells what is kept in it."""
 _RESERVED = frozenset({"dedicated", "dedicate", "reserved", "reserve", "meant", "mean", "intended", "intend"})
 """Participles before *for* and *to* that tell what a place is for."""
-_LENGTHS = UNITS.keys() - word_set("hand finger thumb palm fist arm") | {"inche", "square"}
+_BODY = word_set("hand finger thumb palm fist arm")
+"""Parts of the person who does something."""
+_LENGTHS = UNITS.keys() - _BODY | {"inche", "square"}
 """Words of the measure of a thing."""
 _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
@@ -96,7 +98,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
         _without_openings, _with_participles_of_posture, _with_purposes_of_places,
-        *(_without(find) for find in asides.FINDERS),
+        _with_means_as_commands, *(_without(find) for find in asides.FINDERS),
         _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
         _without(_restriction_of_object),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
@@ -316,8 +318,15 @@ def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
     return chunks
 
 
-_PLACING = word_set("place put lay set position leave hang stack arrange stand insert tuck")
+_PLACING = word_set(
+    "place put lay set position leave hang stack arrange stand insert tuck situate locate store keep attach mount install"
+    " fix"
+)
 """Verbs of commands that can follow another command as a participle."""
+_UNSURE = frozenset({"can", "could", "may", "might", "would"})
+"""Modals of what need not be done."""
+_UNCONDITIONAL = frozenset({"before", "after", "because", "as", "so"})
+"""Conjunctions of clauses that are no conditions."""
 
 
 def _second_verb(chunks: list[Chunk], at: int) -> _Run | None:
@@ -373,6 +382,38 @@ def _means(chunks: list[Chunk], at: int) -> _Run | None:
     end = end_before(chunks, at + 1, _BREAKS)
     _leave_out(chunks[at:end], "how something is done is not where it is")
     return end, None
+
+
+def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *protect it by putting it in the box* and *by putting it there, you …* with a second command.
+
+    A placement is a means only where its clause is neither under a condition, nor denied, nor past.
+    """
+    groups = [chunk.value for chunk in chunks if isinstance(chunk.value, VerbGroup)]
+    told = not any(group.past or not group.positive or group.modal in _UNSURE for group in groups)
+    limited = any(
+        chunk.type in ("REL", "COMPLEMENT") or (chunk.type == "SUB" and chunk.value not in _UNCONDITIONAL)
+        for chunk in chunks
+    )
+    if limited or not told:
+        return chunks
+    for at, chunk in enumerate(chunks[:-3]):
+        named = chunk.type == "UNKNOWN" and chunk.value == "by" and chunk.end == chunk.start + 1
+        group = chunks[at + 1].value if named and chunks[at + 1].type == "TPART" else None
+        if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in _PLACING:
+            continue
+        end = end_before(chunks, at + 2, _BREAKS)
+        thing = chunks[at + 2].value if chunks[at + 2].type == "NP" else None
+        placed = any(other.type in ("PREP", "ADV") for other in chunks[at + 3 : end])
+        if not placed or thing is None or last_word(thing.head) in _BODY:
+            continue
+        command = replace(chunks[at + 1], type="PUT", value=replace(group, form="base"))
+        treated = chunks[at - 1].value if thing.pronoun == "it" and type_at(chunks, at - 1) == "NP" else None
+        if treated is not None and not (treated.plural or treated.pronoun):  # 'boil the egg by placing it in …'
+            chunks[at + 2] = replace(chunks[at + 2], value=replace(treated, determiner="the", count=None))
+        ends = [cut(chunks[end])] if type_at(chunks, end) == "COMMA" else chunks[end : end + 1]
+        return [*chunks[:at], cut(chunk), command, *chunks[at + 2 : end], *ends, *chunks[end + 1 :]]
+    return chunks
 
 
 def _without_openings(chunks: list[Chunk]) -> list[Chunk]:

@@ -173,3 +173,39 @@ def test_things_joined_by_or_are_a_choice(text: str) -> None:
 )  # fmt: skip
 def test_kinds_and_denials_joined_by_or_are_not(text: str) -> None:
     assert all(fact.alternative is None for fact in read(text).stated)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("We highly recommend using a mat under the chair.", ["under(mat, chair)"]),
+        ("I don't recommend placing the lamp near the bed.", ["not near(lamp, bed)"]),
+        ("Consider placing the fern behind the vase.", ["behind(fern, vase)"]),
+        ("It makes sense to put the mugs next to the kettle.", ["next_to(mugs, kettle)"]),
+        ("It makes little sense to put the mugs next to the kettle.", []),
+        ("They recommend placing the lamp near the bed. The jar is on the box.", ["on(jar, box)"]),
+        ("We considered placing the lamp near the bed. The jar is on the box.", ["on(jar, box)"]),
+        ("If it flickers, try putting the clock behind the vase.", []),
+    ],
+)  # fmt: skip
+def test_advice_is_read_as_a_command(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Protect the towels by putting them in a crate under the bench.",
+         ["under(crate, bench)", "inside(towels, crate)"]),
+        ("The gas is then collected by placing a tube behind the flask.", ["behind(tube, flask)"]),
+        ("By placing the desk behind the sofa, you gain room before the guests come.", ["behind(desk, sofa)"]),
+        ("The bone is on the plate. Cool the egg by placing it in the jar.", ["on(bone, plate)", "inside(egg, jar)"]),
+        ("The jars are carried by keeping both hands under the tray. The lid is on the box.", ["on(lid, box)"]),
+        ("The game was started by placing a card next to the box. The lid is on the jar.", ["on(lid, jar)"]),
+        ("Don't clean the lid by placing it in the jar. The box is behind the fern.", ["behind(box, fern)"]),
+        ("You can save room by placing the lamp on the box. The fern is behind the vase.", ["behind(fern, vase)"]),
+        ("Save room by hanging it on the hook if you like. The fern is behind the vase.", ["behind(fern, vase)"]),
+    ],
+)  # fmt: skip
+def test_means_that_are_placements(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
