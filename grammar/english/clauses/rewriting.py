@@ -319,8 +319,8 @@ def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
 
 
 _PLACING = word_set(
-    "place put lay set position leave hang stack arrange stand insert tuck situate locate store keep attach mount install"
-    " fix"
+    "place put lay set position leave hang stack arrange stand insert tuck situate locate store keep attach mount"
+    " install fix"
 )
 """Verbs of commands that can follow another command as a participle."""
 _UNSURE = frozenset({"can", "could", "may", "might", "would"})
