@@ -317,6 +317,8 @@ def _ends_list(chunks: list[Chunk], at: int, end: int) -> bool:
     """Return True if a clause would end with the last noun of a list, which can be the subject of what follows."""
     if [chunk.type for chunk in chunks[end - 2 : end]] != ["NJ", "NP"] or chunks[end].type in _JOINTS:
         return False
+    if all(chunk.type == "UNKNOWN" and chunk.end - chunk.start > 1 for chunk in chunks[end:]):
+        return False  # 'on coasters or small plates to protect the cloth'
     relators = [chunk.value for chunk in chunks[at:end] if chunk.type == "PREP"]
     return not relators or relators[-1].preposition.relation not in ("between", "among")
 

@@ -164,6 +164,12 @@ class FixedPhraseChunker(JointChunker):
         ends = self.norms[at + 1] in prepositions() or self.norms[at + 1] in ("", ",", ".", "and")
         if norm in ("later", "earlier") and ends and self._previous() in FINITE | {"PART", "TPART", "NP"}:
             return Chunk("ADVERB", at, at + 1, norm)
+        if (
+            self.norms[at : at + 2] == ["very", "little"]
+            and self._previous() == "PART"
+            and not self.nouns.is_noun(at + 2)
+        ):
+            return Chunk("ADVERB", at, at + 2, "very little")  # 'tools that are used very little go there'
         if norm == "in" and self.norms[at + 1] == "first" and self.norms[at + 2] in ("", ",", ".", ";"):
             return Chunk("ADVERB", at, at + 2, "in first")
         if (

@@ -36,6 +36,8 @@ from deixis.grammar.english.vocabulary.verbs import (
     verb_forms,
 )
 
+_BETWEEN_MODAL_AND_VERB = frozenset({"either", "only", "simply", "then", "always", "now", "easily"})
+
 
 @cache
 def _closed() -> frozenset[str]:
@@ -385,6 +387,9 @@ class NounFinder:
             or (is_adjective(before) and (form is None or form.form != "s" or before not in _PREDICATIVE))
         )
         if norm == "can" or norm in ("will", "may", "need", "might"):
+            if norm == "can" and after in _BETWEEN_MODAL_AND_VERB:  # 'the napkins can either be placed there'
+                at += 1
+                after = self.norms[at + 1]
             if norm == "can" and before[:1].isalpha() and before not in self._closed and not is_adjective(before):
                 follows = self._verbs.get(after)
                 goes = follows is not None and follows.form == "base"

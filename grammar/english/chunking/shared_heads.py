@@ -19,7 +19,7 @@ from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
 from deixis.grammar.english.vocabulary.nouns import EVENTS, SUBSTANCES
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
-from deixis.grammar.english.vocabulary.verbs import verb_forms
+from deixis.grammar.english.vocabulary.verbs import PUT_VERBS, verb_forms
 
 _ONE_THING = frozenset({("bread", "butter"), ("cheese", "wine"), ("salt", "pepper")})
 """Modifiers of one thing: *a cheese and wine set*."""
@@ -97,13 +97,17 @@ def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
         before = at - 1
         while before > 0 and is_adjective(found[before].norm):
             before -= 1
-        opens = at == 0 or found[before].norm in DETERMINERS | POSSESSIVES.keys() | {",", "and", ":", ";"}
-        if not opens or first == second or not joint.isalpha():
+        compound = before >= 0 and (found[before].norm in _USES or nouns.knows(f"{found[before].norm} {first}"))
+        before -= compound
+        opens = before < 0 or found[before].norm in DETERMINERS | POSSESSIVES.keys() | {",", "and", ":", ";"}
+        commanded = not opens and found[before].norm in PUT_VERBS
+        commanded = commanded and (before == 0 or found[before - 1].norm in (",", "and", "then"))
+        if not (opens or commanded) or first == second or not joint.isalpha():
             continue
         if joint in ("and", "or"):
             opposite = {first, second} in _OPPOSITES
             plural = _plural_head(found, at + 3, nouns) if opposite and (first, second) not in _ONE_THING else []
-            shared = None if plural else _shared_head(found, at, nouns)
+            shared = None if plural else _shared_head(found, at, nouns, sure=not opens or compound)
             found[at + 1 : at + 1] = [Word(word, word, found[at].start, found[at].end, False) for word in plural]
             if shared is not None:
                 found.insert(at + 1, Word(shared, shared, found[at].start, found[at].end, False))
@@ -118,8 +122,11 @@ def _share_modifier(modifier: str, one: str, other: str, nouns: KnownNouns) -> b
     return cutlery and nouns.knows(f"{modifier} {one}") and nouns.knows(f"{modifier} {other}")
 
 
-def _shared_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> str | None:
-    """Return the noun that the modifiers at this place and after the next conjunction share."""
+def _shared_head(words: Sequence[Word], at: int, nouns: KnownNouns, sure: bool) -> str | None:
+    """Return the noun that the modifiers at this place and after the next conjunction share.
+
+    If only what is ``sure`` is wanted, it is known with both modifiers.
+    """
     first, joint, second = (word.norm for word in words[at : at + 3])
     ending = next((noun for noun in _ENDINGS if second.endswith(noun) and second != noun), None)
     if ending is not None:
@@ -132,6 +139,8 @@ def _shared_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> str | Non
         return None  # 'a red or white wine glass'
     if nouns.knows(f"{first} {head}") and nouns.knows(f"{second} {head}"):
         return head
+    if sure:
+        return None
     several = joint == "or" or nouns.singular(head)[1]
     modified = first in _USES and (second in _USES or nouns.knows(f"{second} {head}"))
     return head if several and modified and nouns.knows(head) else None

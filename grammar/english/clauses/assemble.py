@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from deixis.grammar.english.chunking.chunk import Chunk, VerbGroup
 from deixis.grammar.english.clauses.build import flat, viewpoint_of
-from deixis.grammar.english.clauses.built import Built, Noun, Predication, Verb, misunderstood, notes
+from deixis.grammar.english.clauses.built import ALONG_WITH, Built, Noun, Predication, Verb, misunderstood, notes
 from deixis.grammar.english.clauses.joints import Segment
 from deixis.grammar.english.clauses.places import HOURS
 from deixis.grammar.english.confidence import Guess
@@ -687,8 +687,8 @@ class Assembly:
         made, absolute = _absolutes(predicates + main)
         shared = tuple(p for p in made if p.relation != "with" and p.positive)
         if phrase is not None and shared:  # 'the gloves are on the shelf, along with the goggles'
-            absolute += [(a, shared) for p in made if "too" in p.adverbs for a in p.arguments]
-            made = [p for p in made if "too" not in p.adverbs]
+            absolute += [(a, shared) for p in made if ALONG_WITH in p.adverbs for a in p.arguments]
+            made = [p for p in made if ALONG_WITH not in p.adverbs]
         if verb.thing is not None:
             of_thing = flat(replace(verb, predications=(), nominal=None))
             if group.lemma not in TRANSITIVE_RELATIONS:  # 'I have opened it, with the lamp to my left'

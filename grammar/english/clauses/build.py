@@ -9,7 +9,7 @@ from typing import Any
 from lark import Transformer, v_args
 
 from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
-from deixis.grammar.english.clauses.built import Built, Noun, Predication, Verb, misunderstood, union
+from deixis.grammar.english.clauses.built import ALONG_WITH, Built, Noun, Predication, Verb, misunderstood, union
 from deixis.grammar.english.clauses.places import directions_of, is_place, other_side, place
 from deixis.grammar.english.clauses.predicates import (
     AWAY_FROM,
@@ -311,7 +311,7 @@ class Builder(Transformer[Any, Built]):
             return Noun(noun)
         if noun.pronoun in ("it", "they", "me", "you", "we", "this", "he", "she"):
             return Noun(noun, tuple(mods))
-        if shared := tuple(p for p in mods if "too" in p.adverbs):  # 'on the tray together with the jug'
+        if shared := tuple(p for p in mods if ALONG_WITH in p.adverbs):  # 'on the tray together with the jug'
             mods = tuple(p for p in mods if p not in shared)
             return Noun(_restricted(noun, mods) if mods else noun, shared)
         if last_word(noun.head) in PARTS | FRONTS:
@@ -622,7 +622,7 @@ class Builder(Transformer[Any, Built]):
                 joined = relator.preposition.phrase in _SHARING_PLACES and not member.predicates and relator.positive
                 if i and noun.phrase.joined_by == "or":  # 'cover the bowl with a cloth or a lid'
                     made = [replace(p, adverbs=(*p.adverbs, _OR)) for p in made]
-                found += [replace(p, adverbs=(*p.adverbs, "too")) for p in made] if joined else made
+                found += [replace(p, adverbs=(*p.adverbs, ALONG_WITH)) for p in made] if joined else made
             found += noun.extra
         return tuple(found)
 

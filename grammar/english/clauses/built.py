@@ -16,6 +16,9 @@ from deixis.grammar.english.tree import (
 notes: ContextVar[list[Misunderstood]] = ContextVar("notes")
 """Phrases of the sentence being built that have no meaning here."""
 
+ALONG_WITH = "along with"
+"""Adverb of what shares the place of another thing: *on the shelf, along with the goggles*; not *too* of a degree."""
+
 
 @dataclass(frozen=True, slots=True)
 class Noun:

@@ -209,3 +209,25 @@ def test_advice_is_read_as_a_command(text: str, expected: list[str]) -> None:
 )  # fmt: skip
 def test_means_that_are_placements(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Set tea and coffee pots on the box.", ["on(tea_pot, box)", "on(coffee_pots, box)"]),
+        ("Set fruit juice and cocktail glasses behind the box.",
+         ["behind(fruit_juice_glass, box)", "behind(cocktail_glasses, box)"]),
+        ("Place soup and dessert spoons behind the box.", ["behind(soup_spoon, box)", "behind(dessert_spoons, box)"]),
+        ("Put food and water bottles in the crate.", ["inside(food, crate)", "inside(water_bottles, crate)"]),
+        ("Place a plate and dessert spoons behind the box.", ["behind(plate, box)", "behind(dessert_spoons, box)"]),
+        ("Keep the jar near the vase, but not too close to the stove or the oven.",
+         ["near(jar, vase)", "not near(jar, stove)", "not near(jar, oven)"]),
+        ("The cap is on the box, along with the jar.", ["on(cap, box)", "on(jar, box)"]),
+        ("The lids and napkins can either be placed near the box or behind it.",
+         ["near(lids, box)", "near(napkins, box)", "behind(lids, box)", "behind(napkins, box)"]),
+        ("Set the jars on mats or small boxes to protect the cloth.", ["on(jars, mats)", "on(jars, boxes)"]),
+        ("Tools that are used very little can easily be kept behind the box.", ["behind(tools, box)"]),
+    ],
+)  # fmt: skip
+def test_coordinated_things_and_places(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
