@@ -362,13 +362,19 @@ class FixedPhraseChunker(JointChunker):
         return None
 
     def _examples(self, at: int) -> int | None:
-        """Return the end of *such as yogurt and cheese* after a noun; None for other phrases."""
-        if self.norms[at : at + 2] != ["such", "as"] or self._previous() != "NP":
+        """Return the end of *such as yogurt and cheese* after a noun; None for other phrases.
+
+        After *like*, at least two bare nouns are examples of a plural: *snacks like nuts and crackers*.
+        """
+        alike = self.norms[at] == "like" and self._previous() == "NP" and self.chunks[-1].value.plural
+        if (self.norms[at : at + 2] != ["such", "as"] or self._previous() != "NP") and not alike:
             return None
-        end = at + 2
+        first = end = at + 2 - alike
         while self.norms[end]:
             found = self.nouns.phrase(end, "PREP")
             if found is None or found[1] is None or found[1].pronoun is not None:
+                return None
+            if alike and self.nouns.is_determiner(end):
                 return None
             end = found[0]
             joint = end
@@ -378,7 +384,9 @@ class FixedPhraseChunker(JointChunker):
             if self.norms[joint] in ("etc", "etc."):
                 return joint + 1
             if joint == end or verb is not None or not self.nouns.starts(joint) or self.nouns.is_determiner(joint):
-                return end
+                listed = not {",", "and", "or"}.isdisjoint(self.norms[first:end])
+                ends = joint == end or not self.nouns.is_determiner(joint)  # not 'like maps, a knife or your phone'
+                return end if (listed and ends) or not alike else None
             end = joint
         return end
 

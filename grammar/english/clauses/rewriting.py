@@ -12,7 +12,7 @@ from deixis.grammar.english.clauses.built import misunderstood
 from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
 from deixis.grammar.english.clauses.ellipses import filled_in
 from deixis.grammar.english.clauses.places import is_place
-from deixis.grammar.english.tree import Degree, NounPhrase
+from deixis.grammar.english.tree import Degree, NounPhrase, Span
 from deixis.grammar.english.vocabulary.function_words import PERSONS, READY, UNITS
 from deixis.grammar.english.vocabulary.nouns import (
     AIMED_PARTS,
@@ -95,7 +95,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
+        _without_vocatives, _with_accompanied_members, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
         _without_openings, _with_participles_of_posture, _with_purposes_of_places,
         _with_means_as_commands, *(_without(find) for find in asides.FINDERS),
@@ -138,9 +138,7 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
             subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
             of = kept[subjects[-1]] if aimed and subjects else kept[-1]  # 'A is on the left of B (farthest from C)'
-            noun = replace(of.value, determiner="the", count=None)
-            named = Chunk("NP", of.start, of.end, noun, of.span)
-            after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
+            after += _apart(of, inside, chunk.span)
             i = (closing or i) + 1
             continue
         if said and [c.type for c in inside[:2]] == ["NP", "REL"] and "COMMA" not in [c.type for c in inside]:
@@ -152,8 +150,47 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             continue
         kept.append(chunk)
         i += 1
-    ends = len(kept) - 1 if after and kept and kept[-1].type == "CUT" else len(kept)
-    return [*kept[:ends], *after, *kept[ends:]]
+    return _with_last(kept, after)
+
+
+def _apart(thing: Chunk, said: list[Chunk], span: Span) -> list[Chunk]:
+    """Return what is said about a thing as a phrase of its own after a cut."""
+    noun = replace(thing.value, determiner="the", count=None)
+    named = Chunk("NP", thing.start, thing.end, noun, thing.span)
+    return [Chunk("CUT", said[0].start, said[0].start, None, span), named, *said]
+
+
+def _with_last(chunks: list[Chunk], added: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with others at the end, before the full stop."""
+    ends = len(chunks) - 1 if added and chunks and chunks[-1].type == "CUT" else len(chunks)
+    return [*chunks[:ends], *added, *chunks[ends:]]
+
+
+def _with_accompanied_members(chunks: list[Chunk]) -> list[Chunk]:
+    """Return a list with what a member within it has at the end: *put the plate, cup with a lid, spoon and fork …*.
+
+    Before the member there is no conjunction, so that what follows the comma is a member of the list too.
+    """
+    kept: list[Chunk] = []
+    after: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        types = [type_at(chunks, i + k) for k in range(-3, 4)]
+        if types == ["NP", "COMMA", "NP", "WITH", "NP", "COMMA", "NP"] and _ends_with_conjunction(chunks, i + 2):
+            after += _apart(chunks[i - 1], chunks[i : i + 2], chunks[i].span)
+            i += 2
+            continue
+        kept.append(chunks[i])
+        i += 1
+    return _with_last(kept, after)
+
+
+def _ends_with_conjunction(chunks: list[Chunk], at: int) -> bool:
+    """Return True for commas with bare nouns, and a last noun after *and*: *, spoon, and fork*."""
+    while [type_at(chunks, at), type_at(chunks, at + 1)] == ["COMMA", "NP"]:
+        at += 2
+    at += type_at(chunks, at) == "COMMA"
+    return [type_at(chunks, at), type_at(chunks, at + 1)] == ["AND", "NP"]
 
 
 def _is_conditional(inside: list[Chunk]) -> bool:

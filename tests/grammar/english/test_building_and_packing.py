@@ -231,3 +231,19 @@ def test_means_that_are_placements(text: str, expected: list[str]) -> None:
 )  # fmt: skip
 def test_coordinated_things_and_places(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Keep cleaning supplies like sprays, sponges, and cloths under the box.", ["under(cleaning_supplies, box)"]),
+        ("Items such as soap, sponges and brushes go behind the box.", ["behind(items, box)"]),
+        ("Store small things like keys, a knife, or your phone in the crate.", ["inside(things, crate)"]),
+        ("Put the plate, cup with a lid, spoon and fork on the box.",
+         ["on(plate, box)", "on(cup, box)", "on(spoon, box)", "on(fork, box)"]),
+        ("In the crate there is a drum, a doll with a hat, a kite and a ball.",
+         ["inside(drum, crate)", "inside(doll, crate)", "inside(kite, crate)", "inside(ball, crate)"]),
+    ],
+)  # fmt: skip
+def test_members_of_lists_are_all_placed(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
