@@ -95,7 +95,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _with_accompanied_members, _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
+        _without_vocatives, _with_accompanied_members,
+        _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
         _without_openings, _with_participles_of_posture, _with_purposes_of_places,
         _with_means_as_commands, *(_without(find) for find in asides.FINDERS),
