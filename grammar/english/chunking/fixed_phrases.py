@@ -647,7 +647,8 @@ _DENIALS = tuple(
 
 _JUDGEMENTS = word_set(
     "true clear certain important essential vital good bad nice best better the case fact sure acceptable fine polite"
-    " proper correct customary usual common traditional advisable idea convenient useful helpful wise sensible"
+    " proper correct customary usual common traditional advisable idea convenient useful helpful wise sensible smart"
+    " practical"
 )
 
 _NECESSARY = word_set("necessary required needed essential obligatory mandatory compulsory")
@@ -661,7 +662,7 @@ _STEPS = word_set("first second third next last lastly finally")
 _GOVERNORS = word_set(
     "remember sure forget need needs have has had got important essential necessary vital crucial best better good"
     " helpful useful advisable advised recommended time ready proceed continue begin start care careful required want"
-    " is are step idea convenient wise sensible helps pays"
+    " is are step idea convenient wise sensible smart practical helps pays"
 )
 """Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
 

@@ -98,7 +98,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _with_accompanied_members,
         _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
-        _without_openings, _with_participles_of_posture, _with_purposes_of_places,
+        _without_openings, _with_placed_subjects, _with_participles_of_posture, _with_purposes_of_places,
         _with_means_as_commands, *(_without(find) for find in asides.FINDERS),
         _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
         _without(_restriction_of_object),
@@ -474,6 +474,23 @@ def _without_openings(chunks: list[Chunk]) -> list[Chunk]:
     placed = any(chunk.type in _PREDICATES for chunk in chunks[first + 3 :])
     command = VerbGroup("place", "posture", "base") if placed else VerbGroup("take", "other", "base")
     return [Chunk("PUT" if placed else "DO", opening.start, verb.end, command, opening.span), *chunks[first + 2 :]]
+
+
+def _with_placed_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the placement of the spoon should be …* with the spoon as its subject."""
+    for at in range(len(chunks) - 3):
+        types = [type_at(chunks, at + k) for k in range(-1, 5)]
+        begins = types[0] in _ENDS | {"ADVERB"} and types[1:5] == ["NP", "OF", "NP", "BE"]
+        if begins and types[5] in ("PREP", "ADV"):
+            phrase = chunks[at].value
+            plain = not (phrase.adjectives or phrase.predicates or phrase.plural or phrase.owner)
+            if phrase.head in _PLACEMENTS and phrase.determiner == "the" and plain:
+                return [*chunks[:at], *chunks[at + 2 :]]
+    return chunks
+
+
+_PLACEMENTS = frozenset({"placement", "position", "location"})
+"""Nouns for the place of a thing, of which a place says where the thing is."""
 
 
 def _with_participles_of_posture(chunks: list[Chunk]) -> list[Chunk]:

@@ -84,7 +84,8 @@ _PUTTING = (
 UNREAL = re.compile(
     r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
     r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather|sooner)\b"
-    r"|(?<!['\u2019])\b(?!you\b)(?<!\bif\s)(?<!\bif\sit\s)(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|plans?|planned|tried|tries|intends?|intended|"
+    r"|(?<!['\u2019])\b(?!you\b)(?!(?<=\byou\s)will\b)(?<!\bif\s)(?<!\bif\sit\s)"
+    r"(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|plans?|planned|tried|tries|intends?|intended|"
     r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
     r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
     r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
