@@ -95,7 +95,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _with_accompanied_members,
+        _without_vocatives, _with_accompanied_members, _with_first_of_owned,
         _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
         _without_openings, _with_placed_subjects, _with_participles_of_posture, _with_purposes_of_places,
@@ -139,7 +139,7 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
             subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
             of = kept[subjects[-1]] if aimed and subjects else kept[-1]  # 'A is on the left of B (farthest from C)'
-            after += _apart(of, inside, chunk.span)
+            after += _apart([of], inside, chunk.span)
             i = (closing or i) + 1
             continue
         if said and [c.type for c in inside[:2]] == ["NP", "REL"] and "COMMA" not in [c.type for c in inside]:
@@ -154,11 +154,13 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
     return _with_last(kept, after)
 
 
-def _apart(thing: Chunk, said: list[Chunk], span: Span) -> list[Chunk]:
-    """Return what is said about a thing as a phrase of its own after a cut."""
-    noun = replace(thing.value, determiner="the", count=None)
-    named = Chunk("NP", thing.start, thing.end, noun, thing.span)
-    return [Chunk("CUT", said[0].start, said[0].start, None, span), named, *said]
+def _apart(things: list[Chunk], said: list[Chunk], span: Span) -> list[Chunk]:
+    """Return what is said about a thing, or about things with their joint, as a phrase of its own after a cut."""
+    named = [
+        replace(chunk, value=replace(chunk.value, determiner="the", count=None) if chunk.type == "NP" else chunk.value)
+        for chunk in things
+    ]
+    return [Chunk("CUT", said[0].start, said[0].start, None, span), *named, *said]
 
 
 def _with_last(chunks: list[Chunk], added: list[Chunk]) -> list[Chunk]:
@@ -178,12 +180,45 @@ def _with_accompanied_members(chunks: list[Chunk]) -> list[Chunk]:
     while i < len(chunks):
         types = [type_at(chunks, i + k) for k in range(-3, 4)]
         if types == ["NP", "COMMA", "NP", "WITH", "NP", "COMMA", "NP"] and _ends_with_conjunction(chunks, i + 2):
-            after += _apart(chunks[i - 1], chunks[i : i + 2], chunks[i].span)
+            after += _apart([chunks[i - 1]], chunks[i : i + 2], chunks[i].span)
             i += 2
             continue
         kept.append(chunks[i])
         i += 1
     return _with_last(kept, after)
+
+
+def _with_first_of_owned(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *you have a tarp under the tent, the poles and the rope* with the place of the first thing at the end.
+
+    The list goes on with what one has, and not with what the tarp is under.
+    """
+    for at in range(1, len(chunks) - 4):
+        verb, thing = chunks[at - 1], chunks[at]
+        if (
+            verb.type != "TVERB"
+            or verb.value.lemma not in _OWNING
+            or thing.type != "NP"
+            or thing.value.determiner is None
+        ):
+            continue
+        first = at + 1 + 2 * ([type_at(chunks, at + 1), type_at(chunks, at + 2)] in (["OR", "NP"], ["AND", "NP"]))
+        end = end_before(chunks, first, _BREAKS)
+        said = [chunk.type for chunk in chunks[first:end]]
+        places = [chunk.value for chunk in chunks[first:end] if chunk.type == "PREP"]
+        single = said[-2:] == ["PREP", "NP"] and set(said) <= {"REL", "VERB", "BE", "PART", "PREP", "NP"}
+        if (
+            single
+            and places[-1].preposition.relation not in ("between", "among")
+            and _ends_with_conjunction(chunks, end)
+        ):
+            told = chunks[first + 1 : end] if said[0] == "REL" else chunks[first:end]
+            return _with_last([*chunks[:first], *chunks[end:]], _apart(chunks[at:first], told, thing.span))
+    return chunks
+
+
+_OWNING = frozenset({"have", "need", "include", "contain", "get", "bring"})
+"""Verbs with lists of what one has."""
 
 
 def _ends_with_conjunction(chunks: list[Chunk], at: int) -> bool:

@@ -248,6 +248,10 @@ def test_coordinated_things_and_places(text: str, expected: list[str]) -> None:
          ["on(plate, box)", "on(cup, box)", "on(spoon, box)", "on(fork, box)"]),
         ("In the crate there is a drum, a doll with a hat, a kite and a ball.",
          ["inside(drum, crate)", "inside(doll, crate)", "inside(kite, crate)", "inside(ball, crate)"]),
+        ("You should have a tarp that goes under the tent, the tent body, poles and stakes.", ["under(tarp, tent)"]),
+        ("The chest contains a mat under the jar, a rope and a lamp.",
+         ["inside(mat, chest)", "inside(rope, chest)", "inside(lamp, chest)", "under(mat, jar)"]),
+        ("We have a rug between the jar, the chair and the box.", ["between(rug, jar, chair, box)"]),
     ],
 )  # fmt: skip
 def test_members_of_lists_are_all_placed(text: str, expected: list[str]) -> None:
