@@ -37,6 +37,7 @@ from deixis.grammar.english.vocabulary.verbs import (
 )
 
 _BETWEEN_MODAL_AND_VERB = frozenset({"either", "only", "simply", "then", "always", "now", "easily"})
+"""Adverbs after *can* that show it to be a modal."""
 
 
 @cache

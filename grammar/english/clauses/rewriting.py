@@ -399,7 +399,7 @@ _PLACING = word_set(
 _UNSURE = frozenset({"can", "could", "may", "might", "would"})
 """Modals of what need not be done."""
 _UNCONDITIONAL = frozenset({"before", "after", "because", "as", "so"})
-"""Conjunctions of clauses that are no conditions."""
+"""Conjunctions of clauses that are not conditions."""
 
 
 def _second_verb(chunks: list[Chunk], at: int) -> _Run | None:
