@@ -368,8 +368,10 @@ class VerbChunker(RelatorChunker):
         if norm in ("set", "put", "spread") and self._previous() == "BE":
             return Chunk("PART", at, end, found)
         if form.form == "base":
-            exemplified = self._previous() == "ADVERB" and self.chunks[-1].value == "such as"
-            subject = "NP" if exemplified else self._previous()  # 'items such as soap and sponges go in the tin'
+            adverb = self.chunks[-1].value if self._previous() == "ADVERB" else None
+            subject = (
+                "NP" if adverb == "such as" else self._previous()
+            )  # 'items such as soap and sponges go in the tin'
             subject_is_you = subject == "NP" and self.norms[self.chunks[-1].start] == "you"
             if subject_is_you and not _RARELY.isdisjoint(group.adverbs):
                 return self._finite(at, end, found)  # 'you rarely find the stapler there'
