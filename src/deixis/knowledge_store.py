@@ -325,6 +325,8 @@ class KnowledgeStore(Closing):
         from deixis.memory.semantic.rdf.graphs import GraphName
         from deixis.ontology.lessons.read import layouts
 
+        if not self.exists():
+            return ()
         return layouts(self.memory().triples(GraphName.LEARNED), self.ontology.relations)
 
     def layout(self, name: str) -> LayoutConcept:

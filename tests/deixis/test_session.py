@@ -203,6 +203,12 @@ def test_nothing_is_inferred_from_a_contradiction() -> None:
     assert inference.inferred() == ()
 
 
+def test_a_session_without_a_memory_has_learned_nothing(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        assert (session.layouts(), session.tables(), session.categories()) == ((), (), {})
+        assert not session.remembers() and not session.path.exists()
+
+
 def test_an_empty_scene() -> None:
     found = deixis.ground(SCRIPT1, Scene(()))
     assert not found.matches

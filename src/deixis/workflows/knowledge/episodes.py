@@ -536,7 +536,7 @@ def memory_to_dict(which: Memory, board: Blackboard, session: _Learner) -> dict[
     elif which is Memory.EPISODIC:
         content["experiences"] = [experience_to_dict(each) for each in experiences(board)]
     elif which is Memory.SEMANTIC:
-        content["layouts"] = [layout.name for layout in session.layouts()] if session.remembers() else []
+        content["layouts"] = [layout.name for layout in session.layouts()]
     elif which is Memory.PERCEPTUAL:
         content["categories"] = dict(session.categories()) if session.has_views() else {}
     return {"memory": which.value, **content}
@@ -677,7 +677,7 @@ def consolidate(
             continue
         fluents = episode(board, each.name)
         last = math.nextafter(each.finish, -math.inf)
-        known = {layout.lesson for layout in session.layouts()} if session.remembers() else set()
+        known = {layout.lesson for layout in session.layouts()}
         words = [  # in this experience, not before
             f for f in fluents if f.statement.predicate == "said" and f.start.lower >= each.start
         ]
