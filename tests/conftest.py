@@ -31,3 +31,9 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
+
+
+@pytest.fixture(autouse=True)
+def _no_memory_of_the_user(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Let sessions without a folder use one that does not exist, and not what the user has learned."""
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path_factory.getbasetemp() / "no-memory"))
