@@ -23,6 +23,11 @@ from deixis.perception.errors import CloudError
 from deixis.perception.scene import Scene
 from deixis.perception.tracking.camera.motion import STANDING, CameraMotion, moved_by
 from deixis.perception.tracking.camera.registration import levels_of
+from deixis.perception.tracking.changes.arrivals import Arrivals
+from deixis.perception.tracking.changes.following import Workers, follow, let_go
+from deixis.perception.tracking.changes.hands import Hands, something_moves
+from deixis.perception.tracking.changes.rest import has_left, is_laid_anew, look_at_resting
+from deixis.perception.tracking.completion.completion import complete
 from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.frames.recent import RecentFrames
 from deixis.perception.tracking.looks.correction import SAME_MODEL, Correction, correct, detection_of, look_closely
@@ -32,13 +37,8 @@ from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.table.observation import Observation, Table
 from deixis.perception.tracking.table.reference import GAP, TABLE, UNKNOWN_OWNER, Changes
-from deixis.perception.tracking.things.arrivals import Arrivals
 from deixis.perception.tracking.things.collection import Things
-from deixis.perception.tracking.things.completion import complete
-from deixis.perception.tracking.things.following import Workers, follow, let_go
-from deixis.perception.tracking.things.hands import Hands, something_moves
 from deixis.perception.tracking.things.pipeline import Pipeline
-from deixis.perception.tracking.things.rest import has_left, is_laid_anew, look_at_resting
 
 MIN_FINITE_SHARE = 0.02
 """Minimum share of points with a depth in a frame that is used."""

@@ -19,6 +19,8 @@ from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.scene import Scene
+from deixis.perception.tracking.completion.missing_parts import MIN_BEFORE
+from deixis.perception.tracking.completion.pieces import join_piece, let_stand
 from deixis.perception.tracking.frames.image import FrameImage, TableView, enlarged
 from deixis.perception.tracking.looks.matching import matches, overlap
 from deixis.perception.tracking.looks.whole import shown
@@ -26,9 +28,7 @@ from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Table
 from deixis.perception.tracking.table.reference import TABLE
 from deixis.perception.tracking.things.collection import Things
-from deixis.perception.tracking.things.missing_parts import MIN_BEFORE
 from deixis.perception.tracking.things.model import Model, model_on_table
-from deixis.perception.tracking.things.pieces import join_piece, let_stand
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 SAME_MODEL = 0.8

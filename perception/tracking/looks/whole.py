@@ -13,6 +13,7 @@ from deixis.perception.detection.detect import Detection, detect
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
+from deixis.perception.tracking.completion.pieces import let_stand
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.colours import TableColours
@@ -21,7 +22,6 @@ from deixis.perception.tracking.table.outline import Outline
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
 from deixis.perception.tracking.things.collection import Things
 from deixis.perception.tracking.things.model import model_on_table
-from deixis.perception.tracking.things.pieces import let_stand
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 ON_PLANE = 0.01

@@ -1,1 +1,1 @@
-"""Things on the table, and hands: models and their completion, particle filters, and fits to what is seen."""
+"""Things on the table: their models, particle filters, likeness, and fits to what is seen."""

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from first_looks import HALF, MUG, PLATE, first_look
 
+from deixis.perception.tracking.changes.arrivals import is_revealed, segment
+from deixis.perception.tracking.changes.hands import Hands
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER
-from deixis.perception.tracking.things.arrivals import is_revealed, segment
-from deixis.perception.tracking.things.hands import Hands
 
 pytest.importorskip("open3d")
 

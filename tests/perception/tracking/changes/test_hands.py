@@ -4,12 +4,12 @@ import numpy as np
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.changes.hands import MAX_STEP, Hands
 from deixis.perception.tracking.frames.image import FrameImage, Optics
 from deixis.perception.tracking.kernels import NEARER, SAME, UNKNOWN
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.outline import Outline
 from deixis.perception.tracking.table.reference import Changes
-from deixis.perception.tracking.things.hands import MAX_STEP, Hands
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 ROWS, COLUMNS = 60, 80

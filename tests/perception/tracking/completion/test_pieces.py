@@ -6,9 +6,14 @@ from flat_tables import BLUE, OPTICS, SHAPE, STEEL, lay, table, thing_at, view
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.completion.pieces import (
+    floating_parts,
+    stands_behind,
+    stands_on_table,
+    supporting_parts,
+)
 from deixis.perception.tracking.frames.image import FrameImage
 from deixis.perception.tracking.settings import TrackingSettings
-from deixis.perception.tracking.things.pieces import floating_parts, stands_behind, stands_on_table, supporting_parts
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 

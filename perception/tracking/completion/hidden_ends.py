@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import turned_axes
+from deixis.perception.tracking.completion.missing_parts import FLAT, MIN_BEFORE, MIN_SLENDERNESS
 from deixis.perception.tracking.frames.image import TableView
 from deixis.perception.tracking.table.reference import Reference
-from deixis.perception.tracking.things.missing_parts import FLAT, MIN_BEFORE, MIN_SLENDERNESS
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 STEP = 0.003

@@ -6,10 +6,10 @@ import pytest
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.completion.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.reference import UNKNOWN_OWNER, Reference
-from deixis.perception.tracking.things.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 SHAPE = 60, 120

@@ -5,10 +5,10 @@ import pytest
 from flat_tables import BLUE, KNIFE, OPTICS, SHADED, SHAPE, STEEL, WHITE, WOOD, Table, lay, table, thing_at, view
 
 from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.completion.missing_parts import FlatThing, revealed_part
 from deixis.perception.tracking.frames.image import FrameImage
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER
-from deixis.perception.tracking.things.missing_parts import FlatThing, revealed_part
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.tracking.completion.hidden_ends import hidden_lengths, likely_length
+from deixis.perception.tracking.completion.missing_parts import BEYOND, MARGIN, FlatThing, revealed_part
+from deixis.perception.tracking.completion.pieces import floating_parts, supporting_parts
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Observation, Table
 from deixis.perception.tracking.table.reference import Reference
 from deixis.perception.tracking.things.collection import Things
-from deixis.perception.tracking.things.hidden_ends import hidden_lengths, likely_length
-from deixis.perception.tracking.things.missing_parts import BEYOND, MARGIN, FlatThing, revealed_part
-from deixis.perception.tracking.things.pieces import floating_parts, supporting_parts
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 CONFIRM_AFTER = 0.3

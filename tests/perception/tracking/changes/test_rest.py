@@ -3,10 +3,10 @@
 import pytest
 from first_looks import HALF, MUG, PLATE, FirstLook, first_look
 
+from deixis.perception.tracking.changes.rest import has_left, is_laid_anew, look_at_resting
 from deixis.perception.tracking.kernels import FARTHER, SAME
 from deixis.perception.tracking.table.observation import Observation
 from deixis.perception.tracking.table.reference import UNKNOWN_OWNER
-from deixis.perception.tracking.things.rest import has_left, is_laid_anew, look_at_resting
 
 pytest.importorskip("open3d")
 

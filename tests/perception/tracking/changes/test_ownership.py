@@ -6,8 +6,8 @@ from first_looks import HALF, PLATE, first_look
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.changes.ownership import things_around
 from deixis.perception.tracking.things.model import Model
-from deixis.perception.tracking.things.ownership import things_around
 
 pytest.importorskip("open3d")
 

@@ -10,11 +10,11 @@ from collections.abc import Collection, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.tracking.completion.missing_parts import BEYOND, FLAT, MIN_BEFORE, STRIP_MARGIN
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Table
 from deixis.perception.tracking.things.collection import Things
-from deixis.perception.tracking.things.missing_parts import BEYOND, FLAT, MIN_BEFORE, STRIP_MARGIN
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 MIN_LIFTED, SUPPORT = 0.025, 0.03

@@ -10,14 +10,14 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.tracking.changes.hands import Hands
+from deixis.perception.tracking.changes.ownership import MIN_WAY, claim
+from deixis.perception.tracking.changes.rest import ABSENT, EXPOSED, start
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Observation, Table
 from deixis.perception.tracking.things.collection import Things
-from deixis.perception.tracking.things.hands import Hands
-from deixis.perception.tracking.things.ownership import MIN_WAY, claim
 from deixis.perception.tracking.things.particles import Estimate
 from deixis.perception.tracking.things.pipeline import Pipeline
-from deixis.perception.tracking.things.rest import ABSENT, EXPOSED, start
 
 MAX_SPEED = 0.8
 """Speed in metres per second at which a thing may move while it is not found."""

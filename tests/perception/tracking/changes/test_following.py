@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from first_looks import HALF, MUG, PLATE, first_look
 
-from deixis.perception.tracking.things.following import Workers, carry, follow, let_go
-from deixis.perception.tracking.things.hands import Hands
-from deixis.perception.tracking.things.rest import start
+from deixis.perception.tracking.changes.following import Workers, carry, follow, let_go
+from deixis.perception.tracking.changes.hands import Hands
+from deixis.perception.tracking.changes.rest import start
 
 pytest.importorskip("open3d")
 

@@ -12,17 +12,17 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect_above
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
+from deixis.perception.tracking.changes.following import FLAT
+from deixis.perception.tracking.changes.hands import Hands
+from deixis.perception.tracking.changes.ownership import things_around
+from deixis.perception.tracking.completion.pieces import join_piece, let_stand
 from deixis.perception.tracking.frames.image import enlarged
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Observation, Table
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER
 from deixis.perception.tracking.things.collection import Things
 from deixis.perception.tracking.things.fitting import Fit, fits
-from deixis.perception.tracking.things.following import FLAT
-from deixis.perception.tracking.things.hands import Hands
 from deixis.perception.tracking.things.model import model_on_table
-from deixis.perception.tracking.things.ownership import things_around
-from deixis.perception.tracking.things.pieces import join_piece, let_stand
 from deixis.perception.tracking.things.pipeline import Pipeline
 
 DETECTION_PAUSE = 0.25

@@ -1,0 +1,1 @@
+"""Completion of things at rest: parts that were missed or hidden, pieces taken for things, and hidden ends."""
