@@ -175,7 +175,7 @@ def told_figure(told: Told, axes: Axes | None = None) -> Figure:
     return learned_figure(told.learned, axes)
 
 
-def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
+def scene_figure(scene: Scene, axes: Axes | None = None, title: str | None = None) -> Figure:
     """Draw the boxes of a scene from above, each with its label or id.
 
     Parameters
@@ -184,6 +184,8 @@ def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
         The scene.
     axes
         Axes to draw into, or None for a new figure.
+    title
+        Title above the table, if any.
 
     Returns
     -------
@@ -193,7 +195,7 @@ def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
     figure, axes = canvas(axes, WIDTH, _table_height(scene) + 0.9)
     named = {thing.id: thing.label for thing in scene.objects if thing.label}
     _draw_boxes(axes, scene, named, {}, NO_MARKS, {})
-    _finish(figure, axes, scene, named, (), None)
+    _finish(figure, axes, scene, named, (), title)
     return figure
 
 

@@ -137,7 +137,9 @@ def tracking_figure(found: Tracking, axes: Axes | None = None) -> Figure:
     """
     if not found.things:
         raise DeixisError("there is no tracked thing to draw; to_text() says what was seen")
-    return scene_figure(scene_of(found.things, found.seconds), axes)
+    scene = scene_of(found.things, found.seconds)
+    named = replace(scene, objects=tuple(replace(thing, label=thing.label or thing.id) for thing in scene.objects))
+    return scene_figure(named, axes, found.summary())
 
 
 def perceived_figure(scene: Scene) -> Figure:

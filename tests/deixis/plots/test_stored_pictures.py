@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -134,6 +135,16 @@ def retrieval() -> Figure:
     return deixis.retrieve(scene(), EXAMPLES, least=0.6).plot()
 
 
+def tracked_things() -> Figure:
+    from deixis.perception.simulator.films.stage import Rest, TakeAway, film
+    from deixis.perception.simulator.laying import Placement
+    from deixis.workflows.scenes.track import track
+
+    things = [Placement("mug", "mug", 0.2, 0.0, seed=1), Placement("plate", "dinner plate", -0.1, 0.0, seed=2)]
+    story = film(things, [Rest(0.3), TakeAway("mug"), Rest(1.2)])
+    return track(SimpleNamespace(frames=lambda: story.frames(6, scale=0.4))).plot()
+
+
 PICTURES: list[Callable[[], Figure]] = [
     decided_grounding,
     doubtful_grounding,
@@ -147,6 +158,7 @@ PICTURES: list[Callable[[], Figure]] = [
     doubtful_reference,
     chronology,
     retrieval,
+    tracked_things,
 ]
 
 
