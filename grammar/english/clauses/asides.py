@@ -308,9 +308,9 @@ def side_up(chunks: list[Chunk], at: int) -> Run | None:
     if types[:2] != ["COMMA", "NP"] or types[2] not in ("ADVERB", "ADV"):
         return None
     side = chunks[at + 1].value
-    said = chunks[at + 2].value if types[2] == "ADVERB" else chunks[at + 2].value.preposition.phrase
+    direction = chunks[at + 2].value if types[2] == "ADVERB" else chunks[at + 2].value.preposition.phrase
     bare = side.determiner is None and side.owner is None and " " in side.head and last_word(side.head) == "side"
-    if not bare or str(said).split()[-1:] not in (["up"], ["down"], ["upward"], ["downward"], ["upwards"]):
+    if not bare or str(direction).split()[-1:] not in (["up"], ["down"], ["upward"], ["downward"], ["upwards"]):
         return None
     _leave_out(chunks[at + 1 : at + 3], "which side is up does not say where something is")
     return at + 3, None

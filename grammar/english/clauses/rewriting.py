@@ -204,16 +204,16 @@ def _with_first_of_owned(chunks: list[Chunk]) -> list[Chunk]:
             continue
         first = at + 1 + 2 * ([type_at(chunks, at + 1), type_at(chunks, at + 2)] in (["OR", "NP"], ["AND", "NP"]))
         end = end_before(chunks, first, _BREAKS)
-        said = [chunk.type for chunk in chunks[first:end]]
+        types = [chunk.type for chunk in chunks[first:end]]
         places = [chunk.value for chunk in chunks[first:end] if chunk.type == "PREP"]
-        single = said[-2:] == ["PREP", "NP"] and set(said) <= {"REL", "VERB", "BE", "PART", "PREP", "NP"}
+        single = types[-2:] == ["PREP", "NP"] and set(types) <= {"REL", "VERB", "BE", "PART", "PREP", "NP"}
         if (
             single
             and places[-1].preposition.relation not in ("between", "among")
             and _ends_with_conjunction(chunks, end)
         ):
-            told = chunks[first + 1 : end] if said[0] == "REL" else chunks[first:end]
-            return _with_last([*chunks[:first], *chunks[end:]], _apart(chunks[at:first], told, thing.span))
+            places_of_first = chunks[first + 1 : end] if types[0] == "REL" else chunks[first:end]
+            return _with_last([*chunks[:first], *chunks[end:]], _apart(chunks[at:first], places_of_first, thing.span))
     return chunks
 
 
