@@ -413,9 +413,10 @@ class References:
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
             bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
-            longer = entity.noun != phrase.head and not entity.was_called(phrase.head)
-            if bare and longer and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
-                continue  # 'folded napkins' after 'the paper napkins'
+            if bare and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'folded napkins' after 'the paper napkins', 'used cards' after 'four cards'
+            if _are_others(phrase, entity):
+                continue
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (
@@ -1043,6 +1044,14 @@ def _is_one_of_a_kind(phrase: NounPhrase, entity: Entity) -> bool:
     kind = entity.plural and not (entity.single or entity.members) and not phrase.plural and phrase.determiner == "the"
     told = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN and a.dimension in _OWN}
     return kind and bool(told) and not told & entity.adjectives
+
+
+def _are_others(phrase: NounPhrase, group: Entity) -> bool:
+    """Return True for *all other cards* and *these five cards* after *four cards*: more than the group has."""
+    if not (phrase.plural and group.members and group.noun):
+        return False
+    other = phrase.determiner == "other" or any(a.word == "other" for a in phrase.adjectives)
+    return (other and not any(leaf.is_picked for leaf in group.leaves())) or (phrase.count or 0) > group.size
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:
