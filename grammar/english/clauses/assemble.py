@@ -15,7 +15,7 @@ from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
-from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS, TRANSITIVE_RELATIONS
+from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS, TRANSITIVE_RELATIONS, TREATING_VERBS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _REFERS_BACK = re.compile(r"\b(?:it|them|they|these|those)\b", re.IGNORECASE)
@@ -232,6 +232,8 @@ class Assembly:
                 misunderstood(span, f"'{group.lemma}' does not say where something is not")
                 return  # 'do not dip the bread in the oil'
         letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
+        if built.shape == "other" and subject is not None and built.verbs[0].group.lemma in TREATING_VERBS:
+            subject = _treated(subject)
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
@@ -750,6 +752,15 @@ class Assembly:
         placed = clause.subject is not None and bool(clause.subject.predicates)
         if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
             self.clauses.append(replace(clause, predicates=tuple(kept), guesses=self.guesses | clause.guesses))
+
+
+def _treated(thing: Noun) -> Noun:
+    """Return the object of *wash the cups in the sink* without where it is washed."""
+    where = tuple(p for p in thing.phrase.predicates if p.relation in ("inside", "on") and not p.reversed)
+    for predicate in where:
+        misunderstood(predicate.span, "where something is done is not where the thing is afterwards")
+    kept = tuple(p for p in thing.phrase.predicates if p not in where)
+    return Noun(replace(thing.phrase, predicates=kept), thing.extra)
 
 
 def _is_plan(group: VerbGroup, agent: NounPhrase) -> bool:

@@ -128,6 +128,7 @@ class Discourse(Statements):
             self.references.lost = [problem.span for problem in sentence.misunderstood]
             self.condition = condition_of(sentence)
             self.elsewhere = self._other_viewpoint(sentence)
+            self.titled = sentence.place if sentence.heading else self.titled
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
             if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
                 self._ask_about(sentence.fragment)
