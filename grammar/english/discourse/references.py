@@ -369,6 +369,8 @@ class References:
         latest_first = self._named_like(phrase.head)
         if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[0]] + self.words(phrase)):
             return None
+        if any(a.word == "matching" for a in phrase.adjectives):
+            return None  # 'align the pockets with the matching pockets'
         if any(a.word == "remaining" for a in phrase.adjectives):
             return self._remaining(phrase, latest_first)
         if self._is_ambiguous(phrase, latest_first):
@@ -415,6 +417,9 @@ class References:
             bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
             if bare and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
                 continue  # 'folded napkins' after 'the paper napkins', 'used cards' after 'four cards'
+            longer = entity.noun != phrase.head and not entity.was_called(phrase.head)
+            if bare and longer and entity.born < self.sentence - MAX_SENTENCES_TO_GROUP:
+                continue  # 'cups, mugs and plates' after 'measuring cups', long before
             if _are_others(phrase, entity):
                 continue
             if entity.group is not None and entity.group in self.entities:
