@@ -10,6 +10,7 @@ from deixis.grammar.english.clauses.build import flat, viewpoint_of
 from deixis.grammar.english.clauses.built import ALONG_WITH, Built, Noun, Predication, Verb, misunderstood, notes
 from deixis.grammar.english.clauses.joints import Segment
 from deixis.grammar.english.clauses.places import HOURS
+from deixis.grammar.english.clauses.predicates import place_left
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
@@ -26,6 +27,8 @@ _LAST_OF_ALL = re.compile(r"\b(?:finally|lastly|last\s+of\s+all)\b", re.IGNORECA
 _OWN = re.compile(r"\b(?:his|her)\b", re.IGNORECASE)
 """Owner of a part of the body: *he has a chip on his shoulder*."""
 _FRAMES = frozenset({"facing", "from"})
+_BEING = frozenset({"be", "lie", "stand", "sit", "rest", "lay"})
+"""Verbs before *off* and *out of* that say where a thing is not."""
 _PLACING = frozenset(
     {
         "put", "place", "keep", "leave", "set", "lay", "store", "spread", "position", "move", "return", "transfer",
@@ -684,6 +687,8 @@ class Assembly:
             predicates, self.front = [*self.front, *predicates], ()
         if mood is Mood.COMMAND:  # 'with a helper, turn the desk over'
             predicates = [p for p in predicates if p.relation != "with" or any(a.predicates for a in p.arguments)]
+        if group.lemma in _BEING:
+            main = [place_left(predicate) for predicate in main]  # 'the lid is off the pot'
         made, absolute = _absolutes(predicates + main)
         shared = tuple(p for p in made if p.relation != "with" and p.positive)
         if phrase is not None and shared:  # 'the gloves are on the shelf, along with the goggles'
@@ -823,7 +828,8 @@ def _split_frames(predications: tuple[Predication, ...]) -> tuple[tuple[Predicat
     if not nested and not seen_from and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
         return predications, None
     everything = tuple(p for part in predications for p in part.predicates)
-    return (), viewpoint_of(everything)
+    viewpoint = viewpoint_of(everything)
+    return (predications if viewpoint is None else ()), viewpoint  # 'the cup is on the mat, facing left' has none
 
 
 def _joined(first: Viewpoint | None, second: Viewpoint) -> Viewpoint:

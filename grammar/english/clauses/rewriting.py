@@ -183,9 +183,26 @@ def _with_accompanied_members(chunks: list[Chunk]) -> list[Chunk]:
             after += _apart([chunks[i - 1]], chunks[i : i + 2], chunks[i].span)
             i += 2
             continue
+        end = _end_of_own_part(chunks, i)
+        if end is not None:  # 'you have the knife, with the blade facing the plate, and the spoon'
+            after += _apart([chunks[i - 1]], chunks[i + 1 : end], chunks[i + 1].span)
+            i = end
+            continue
         kept.append(chunks[i])
         i += 1
     return _with_last(kept, after)
+
+
+def _end_of_own_part(chunks: list[Chunk], at: int) -> int | None:
+    """Return the end of *, with its blade facing the plate* between an object and *, and* with the last one."""
+    aside = [type_at(chunks, at + k) for k in range(-2, 6)]
+    apart = {aside[2], aside[7]} <= {"COMMA", "CUT"} and aside[0] in ("TVERB", "BE")
+    if not apart or [aside[1], *aside[3:7]] != ["NP", "WITH", "NP", "PREP", "NP"]:
+        return None
+    listed = [type_at(chunks, at + k) for k in range(6, 9)]
+    aimed = last_word(chunks[at + 2].value.head) in AIMED_PARTS
+    joined = listed[0] in ("AND", "CUT") and listed[1] == "NP" and listed[2] in _ENDS
+    return at + 5 if aimed and joined else None
 
 
 def _with_first_of_owned(chunks: list[Chunk]) -> list[Chunk]:
@@ -628,6 +645,13 @@ def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
         and type_at(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
         and chunks[at + 1].value[-1].dimension in ("size", "length", "height", "width", "thickness")
     )  # 'a rack of tubes, longest at the wall'  # fmt: skip
+    above = (
+        [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "ADV"] and type_at(chunks, at + 3) in _ENDS
+        and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
+        and chunks[at + 1].value[-1].dimension in ("size", "length", "height", "width", "thickness", "other")
+    )  # 'pans stacked on the rack, smallest on top'  # fmt: skip
+    if above:
+        return at + 3, None
     apart = apart or nearby
     nearest = (
         [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "NP"] and type_at(chunks, at + 3) in _ENDS

@@ -212,6 +212,7 @@ CONSEQUENCE = re.compile(
 LIMITED = re.compile(
     r"\bonly\s+(?:on|in|at|during|when|for)\s+[^,.;]*|\bon\s+(?:mon|tues|wednes|thurs|fri|satur|sun)days\b"
     r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b"
+    r"|\b(?:most|some|many|other)\s+(?:days|nights|mornings|evenings|weekends|weeks|years|times)\b"
     r"|\bin\s+(?:\w+\s+)?weather\b|\bin\s+(?:the\s+)?(?:rain|snow)\b",
     re.IGNORECASE,
 )

@@ -392,7 +392,7 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.members:
             subject = _with_shared_surface(subject)
         text = self.text[self.references.start : self.end]
-        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(text) or EVENT.match(text)
+        limit = self._limit(clause, sentence) or ELSEWHERE.match(text) or EVENT.match(text)
         if limit is not None and self.how.condition is None:
             self.how = replace(self.how, condition=limit[0].strip(" ,."))
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
@@ -465,6 +465,16 @@ class Discourse(Statements):
             self._alternative_to_the_last(first, entity)
         if modal in OBLIGED:
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _limit(self, clause: Clause, sentence: int) -> re.Match[str] | None:
+        """Return the words for a time outside which a clause need not hold: *…, but most nights it is in the sink*."""
+        spans = [other.span for other in self.sentences[sentence].clauses]
+        start = max((end for _, end in spans if end <= clause.span[0]), default=clause.span[0])
+        following = min((other for other, _ in spans if other >= clause.span[1]), default=None)
+        for match in LIMITED.finditer(self.text, start, self.end):
+            if following is None or not clause.span[1] <= match.start() < following:
+                return match
+        return None
 
     def _say_of_one(self, options: Entity, predicates: tuple[Predicate, ...], phrase: NounPhrase) -> None:
         """State predicates of one of several things: *the cup or the mug is on the saucer*."""

@@ -27,6 +27,7 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -174,6 +175,10 @@ class Statements(Relations):
             return
         elif relation == "state" and ("being" in predicate.adverbs or not UNJOINED.isdisjoint(self.how.guesses)):
             return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
+        elif relation == "state":
+            words = self.text[slice(*predicate.span)].casefold().split()
+            forms = [word for word in words if (form := verb_forms().get(word)) is not None and form.lemma == value]
+            value = forms[-1] if forms else value  # 'hidden', and not 'hide'
         self._add(relation, (subject,), (), value=value)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
