@@ -213,10 +213,10 @@ class Assembly:
             self._conditional(span, link)
             subject = built.subject
             if subject is not None and subject.phrase.head and subject.phrase.determiner not in ("no", "any"):
-                text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+                text = self._condition_text(span, link)
                 self.supposed.append(Clause(replace(subject.phrase, predicates=()), (), span, condition=text))
             elif _REFERS_BACK.search(self.text, span[1], self.raw.end):  # 'if you use napkins, put them on the plate'
-                text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+                text = self._condition_text(span, link)
                 self.supposed += [
                     Clause(replace(one, predicates=()), (), span, condition=text) for one in self.named[:1]
                 ]
@@ -433,8 +433,15 @@ class Assembly:
         relation = HOURS.get(hours[0] if len(hours) == 1 or hours[0] % 3 else hours[-1] or 0, "top")
         return replace(predicate, relation=relation, arguments=(self.clock,))
 
+    def _condition_text(self, span: Span, link: str) -> str:
+        """Return the words of a condition from its conjunction on, with those that no chunk holds: *if you want tea*."""
+        start = self.text.casefold().rfind(link, self.raw.start, span[0])
+        written = start >= 0 and not set(self.text[start : span[0]]) & set(",.;:")
+        shown = self.text[start : span[1]] if written else f"{link} {self.text[slice(*span)]}"
+        return " ".join([link, *shown[len(link) :].split()])
+
     def _conditional(self, span: Span, link: str) -> None:
-        text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+        text = self._condition_text(span, link)
         found = notes.get()
         found[:] = [
             note for note in found if not span[0] <= note.span[0] < span[1]

@@ -95,7 +95,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _with_accompanied_members, _with_first_of_owned,
+        _without_vocatives, _with_accompanied_members, _with_first_of_owned, _with_things_of_several,
         _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
         _without_openings, _with_placed_subjects, _with_participles_of_posture, _with_purposes_of_places,
@@ -203,6 +203,22 @@ def _end_of_own_part(chunks: list[Chunk], at: int) -> int | None:
     aimed = last_word(chunks[at + 2].value.head) in AIMED_PARTS
     joined = listed[0] in ("AND", "CUT") and listed[1] == "NP" and listed[2] in _ENDS
     return at + 5 if aimed and joined else None
+
+
+def _with_things_of_several(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the plates are left of the jug with a fork on each of them* with a comma before *with*.
+
+    What is on *them* or on *each* is on the plates, and not on the jug.
+    """
+    for i in range(1, len(chunks) - 3):
+        if [type_at(chunks, i + k) for k in range(-1, 4)] != ["NP", "WITH", "NP", "PREP", "NP"]:
+            continue
+        last, several = chunks[i - 1].value, chunks[i + 3].value.pronoun in ("each", "both", "they")
+        before = [c.value for c in chunks[: i - 1] if c.type == "NP"]
+        single = not last.plural and not last.members and (bool(last.head) or last.pronoun == "it")
+        if several and single and type_at(chunks, i - 2) in ("PREP", "OF") and any(p.plural for p in before):
+            return [*chunks[:i], put_in("COMMA", chunks[i]), *chunks[i:]]
+    return chunks
 
 
 def _with_first_of_owned(chunks: list[Chunk]) -> list[Chunk]:

@@ -229,6 +229,35 @@ ELSEWHERE = re.compile(
 """Place of other people at the beginning of a sentence: *at my neighbour's table*."""
 
 
+_ASKED = re.compile(
+    r"(?:if|in\s+case)\s+(?:you|anyone|anybody|someone|somebody|people|he|she|they|guests)(?:['\u2019](?:re|s)|\s+(?:are|is|ever|should))?\s+"
+    r"(?:asks?|asking|wonders?|wondering|looks?\s+for|looking\s+for|(?:needs?|wants?|like)\s+to\s+know)\b",
+    re.IGNORECASE,
+)
+"""Condition of a question that the statement answers, and not of what it states: *if anyone asks, …*."""
+
+
+def is_condition(text: str) -> bool:
+    """Return True unless a condition only says who may ask about what a statement says.
+
+    Parameters
+    ----------
+    text
+        Text of the condition, from its conjunction on.
+
+    Returns
+    -------
+    bool
+        True if the statement holds under the condition alone.
+
+    Examples
+    --------
+    >>> is_condition("if anyone asks"), is_condition("if it rains")
+    (False, True)
+    """
+    return _ASKED.match(text) is None
+
+
 def condition_of(sentence: Sentence) -> str | None:
     """Return the condition that a sentence begins with, up to its comma: *If you serve soup, …*.
 
@@ -250,7 +279,8 @@ def condition_of(sentence: Sentence) -> str | None:
         return None
     if commanded and _IN_ORDER.match(sentence.text):
         return None  # 'after washing the cups, put them on the shelf'
-    return " ".join(sentence.text.split(",", 1)[0].split())
+    text = " ".join(sentence.text.split(",", 1)[0].split())
+    return text if commanded or is_condition(text) else None
 
 
 def inserted_condition(clause: str) -> str | None:

@@ -30,6 +30,7 @@ from deixis.grammar.english.discourse.commitment import (
     UNSURE,
     condition_of,
     inserted_condition,
+    is_condition,
 )
 from deixis.grammar.english.discourse.drafts import RARE, Draft, Qualification
 from deixis.grammar.english.discourse.entities import Entity, Role
@@ -285,6 +286,8 @@ class Discourse(Statements):
         if clause.mood is Mood.QUESTION:
             self._ask_about(clause.subject, clause.predicates)
             return
+        if clause.mood is Mood.STATEMENT and clause.condition is not None and not is_condition(clause.condition):
+            clause = replace(clause, condition=None)
         modal = clause.modal
         denied = tuple(p for p in clause.predicates if not p.positive)
         if modal in UNCERTAIN and clause.positive and 0 < len(denied) < len(clause.predicates):
@@ -461,7 +464,7 @@ class Discourse(Statements):
             self._say_of_one(entity, predicates, subject)
         else:
             self._say(entity, predicates, subject, existential=clause.existential)
-        if modal in UNCERTAIN:
+        if modal in UNCERTAIN and positive:
             self._alternative_to_the_last(first, entity)
         if modal in OBLIGED:
             self.obliged = (entity, first, len(self.drafts), clause.span[1])

@@ -218,6 +218,7 @@ class Statements(Relations):
                 self._say(self.references.picked(free[0], one[0]), one[0].predicates, one[0])
             return
         for phrase in predicate.arguments:
+            one_of_them = phrase.pronoun == "one" and phrase.determiner == "the"  # 'my mug, the big blue one'
             for adjective in phrase.adjectives:
                 name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
                 if adjective.degree is Degree.SUPERLATIVE and name is not None:
@@ -230,8 +231,9 @@ class Statements(Relations):
                     self._add(f"{adjective.word}most", (subject,), ())
                 elif adjective.dimension == "rank" and adjective.rank is not None and phrase.head not in GENERAL:
                     self._add("ordinal", (subject,), (), value=f"{adjective.rank} from left")
-                elif adjective.dimension in ("colour", "size", "material", "shape") and phrase.head:
+                elif adjective.dimension in ("colour", "size", "material", "shape") and (phrase.head or one_of_them):
                     self._add(adjective.dimension, (subject,), (), value=adjective.word)
+                    subject.itself.adjectives.add((adjective.dimension, adjective.word))
             if phrase.head and phrase.head not in GENERAL and phrase.determiner in ("a", "an"):
                 subject.itself.aliases.add(phrase.head)
                 self.references.renamed.append(subject.itself)
