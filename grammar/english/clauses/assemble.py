@@ -16,6 +16,7 @@ from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
+from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS, TRANSITIVE_RELATIONS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
@@ -27,6 +28,11 @@ _LAST_OF_ALL = re.compile(r"\b(?:finally|lastly|last\s+of\s+all)\b", re.IGNORECA
 _OWN = re.compile(r"\b(?:his|her)\b", re.IGNORECASE)
 """Owner of a part of the body: *he has a chip on his shoulder*."""
 _FRAMES = frozenset({"facing", "from"})
+_TREATING = word_set(
+    "wash rinse soak clean wipe scrub dry boil fry heat warm reheat bake roast cook cool chill mix beat whisk stir peel"
+    " chop slice shake toast melt"
+)
+"""Commands after which *in* and *under* tell where something is done: *wash the cups in the sink*."""
 _BEING = frozenset({"be", "lie", "stand", "sit", "rest", "lay"})
 """Verbs before *off* and *out of* that say where a thing is not."""
 _PLACING = frozenset(
@@ -234,6 +240,8 @@ class Assembly:
             if built.shape == "other" and not group.positive and group.kind == "unknown":
                 misunderstood(span, f"'{group.lemma}' does not say where something is not")
                 return  # 'do not dip the bread in the oil'
+        if built.shape == "other" and subject is not None and built.verbs[0].group.lemma in _TREATING:
+            subject = _without_place_of_act(subject)
         letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]
@@ -762,6 +770,19 @@ class Assembly:
         placed = clause.subject is not None and bool(clause.subject.predicates)
         if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
             self.clauses.append(replace(clause, predicates=tuple(kept), guesses=self.guesses | clause.guesses))
+
+
+def _without_place_of_act(noun: Noun) -> Noun:
+    """Return the object of *wash the cups in the sink* without the place where that is done."""
+
+    def bare(phrase: NounPhrase) -> NounPhrase:
+        kept = tuple(p for p in phrase.predicates if p.relation not in ("inside", "under", "above"))
+        for predicate in phrase.predicates:
+            if predicate not in kept:
+                misunderstood(predicate.span, Guess.ACTION.value)
+        return replace(phrase, predicates=kept, members=tuple(map(bare, phrase.members)))
+
+    return replace(noun, phrase=bare(noun.phrase))
 
 
 def _is_plan(group: VerbGroup, agent: NounPhrase) -> bool:

@@ -217,6 +217,8 @@ LIMITED = re.compile(
     re.IGNORECASE,
 )
 """Time outside which a statement need not hold."""
+UNTIL = re.compile(r"(?<=\w\s)(?:before|until|till)\s+[^,.;]+", re.IGNORECASE)
+"""Time up to which a denial holds: *do not put the cup there before dessert*."""
 EVENT = re.compile(
     r"\W*(?:in\s+an?\s+(?:[\w-]+\s+){0,2}(?:game|match|emergency|crisis|storm|drill|power\s+cut|heatwave)\b"
     r"|in\s+(?:the\s+event|case)\s+of\s+[^,.;]*)",

@@ -27,6 +27,7 @@ from deixis.grammar.english.discourse.commitment import (
     SAID_AFTER,
     SELDOM,
     UNREAL,
+    UNTIL,
     UNSURE,
     condition_of,
     inserted_condition,
@@ -474,6 +475,11 @@ class Discourse(Statements):
         spans = [other.span for other in self.sentences[sentence].clauses]
         start = max((end for _, end in spans if end <= clause.span[0]), default=clause.span[0])
         following = min((other for other, _ in spans if other >= clause.span[1]), default=None)
+        denied = not clause.positive or any(not predicate.positive for predicate in clause.predicates)
+        until = UNTIL.search(self.text, clause.span[0], following or self.end) if denied else None
+        places = [q for p in clause.predicates for q in (p, *(r for a in p.arguments for r in a.predicates))]
+        if until is not None and not any(p.relation == "in_front" for p in places):
+            return until  # 'never put the cup on the table before dessert'
         for match in LIMITED.finditer(self.text, start, self.end):
             if following is None or not clause.span[1] <= match.start() < following:
                 return match

@@ -96,8 +96,8 @@ def _whole(entity: Entity) -> Entity:
     return entity.whole if entity.role is Role.PART and entity.whole is not None else entity
 
 
-_AROUND = frozenset({"left", "right", "in_front", "behind"})
-"""Relations to a thing that has another side."""
+_LATERAL = frozenset({"left", "right"})
+"""Relations after which *the other side* of a thing is the opposite one."""
 
 
 class Relations(Mentions):
@@ -108,7 +108,7 @@ class Relations(Mentions):
         last = self.references.recent[0] if self.references.recent else None
         relation = None if last is None or predicate.relation != "opposite" else last.relation
         written = self.text[slice(*predicate.span)].casefold()
-        if last is None or " other side" not in written or relation not in _AROUND or len(last.others) != 1:
+        if last is None or " other side" not in written or relation not in _LATERAL or len(last.others) != 1:
             return predicate
         (phrase,) = predicate.arguments
         named = phrase.pronoun == "it" or self.references.earlier(phrase) is last.others[0].itself
