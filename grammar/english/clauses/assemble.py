@@ -442,7 +442,7 @@ class Assembly:
         return replace(predicate, relation=relation, arguments=(self.clock,))
 
     def _condition_text(self, span: Span, link: str) -> str:
-        """Return the words of a condition from its conjunction on, with those that no chunk holds: *if you want tea*."""
+        """Return the words of a condition from its conjunction on, all of them: *if you want tea*."""
         start = self.text.casefold().rfind(link, self.raw.start, span[0])
         written = start >= 0 and not set(self.text[start : span[0]]) & set(",.;:")
         shown = self.text[start : span[1]] if written else f"{link} {self.text[slice(*span)]}"

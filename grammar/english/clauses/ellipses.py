@@ -102,8 +102,15 @@ def _without_one_of_each_side(chunks: list[Chunk]) -> list[Chunk]:
     """Return *two lamps, one either side of it* as *two lamps either side of it*."""
     for i in range(1, len(chunks)):
         types = [type_at(chunks, i + k) for k in range(-1, 3)]
-        one = types == ["NP", "COMMA", "NP", "PREP"] and chunks[i + 1].value.pronoun == "one"
-        if one and chunks[i + 2].value.preposition.relation == "each_side" and chunks[i - 1].value.plural:
+        if types != ["NP", "COMMA", "NP", "PREP"]:
+            continue
+        group, each = chunks[i - 1].value, chunks[i + 1].value
+        half = each.count is not None and not each.head and 2 * each.count == group.count
+        if (
+            (each.pronoun == "one" or half)
+            and chunks[i + 2].value.preposition.relation == "each_side"
+            and chunks[i - 1].value.plural
+        ):
             return [*chunks[:i], *_without_one_of_each_side(chunks[i + 2 :])]
     return chunks
 

@@ -37,6 +37,11 @@ NAMED = re.compile(
     re.IGNORECASE,
 )
 """Noun phrase at the end of a clause."""
+MOVED = re.compile(
+    r"\b(?:the|a|an|your|my)\s+([a-z]+(?:\s+(?!on|in|under|behind)[a-z]+)?)\s+(?:on|onto|in|into|under|behind|near|by|next\s+to)\s+$",
+    re.IGNORECASE,
+)
+"""Object of a verb before the place that it is moved to."""
 MAX_SENTENCES_TO_GROUP = 4
 """Number of sentences over which *the smallest* goes back to a group."""
 MIN_LOST = 12
@@ -705,6 +710,9 @@ class References:
             return None
         before = self.text[self.start : phrase.span[0]]
         named = list(NAMED.finditer(before))
+        placed = MOVED.search(before, 0, named[-1].start()) if named else None
+        if placed is not None:  # 'I put the mirror on the desk, but it is safer behind the sofa'
+            named.append(placed)
         words = named[-1][1].casefold().split() if named else []
         if not words or len(words) > 3 or not prepositions().keys().isdisjoint(words):
             return None
