@@ -583,6 +583,7 @@ class VerbChunker(RelatorChunker):
         if (
             len(norm) < 5
             or not norm.endswith(("ed", "ing"))
+            or norm.endswith("eed")
             or previous not in ("NP", "BE", "COMMA", "AND", "REL", "NOT")
             or norm in PRONOUNS
         ):

@@ -545,6 +545,8 @@ class Builder(Transformer[Any, Built]):
             return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
+        bare = noun.phrase.determiner is None and not noun.phrase.plural and bool(noun.phrase.head)
+        idle = idle or (relator.preposition.phrase == "before" and bare and noun.phrase.count is None)
         idle = idle and noun.phrase.owner is None  # 'on display', but 'above your display'
         if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
@@ -559,6 +561,8 @@ class Builder(Transformer[Any, Built]):
         value = None
         if relator.rank is not None:
             value = Adjective("ordinal", "rank", degree, prep.span, rank=relator.rank)
+        noun, again = _of_the_same(noun)
+        extra = (*again, *extra)
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
@@ -857,6 +861,16 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
         return noun, ()
     kept = phrase.predicates[:-1]
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
+
+
+def _of_the_same(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
+    """Separate *on the same plate* from the thing that is there already: *beside the bread, on the same plate*."""
+    phrase = noun.phrase
+    last = phrase.predicates[-1] if phrase.predicates else None
+    if last is None or last.relation not in ("on", "inside") or not any(a.determiner == "same" for a in last.arguments):
+        return noun, ()
+    bare = replace(phrase, predicates=phrase.predicates[:-1], span=(phrase.span[0], last.span[0]))
+    return Noun(bare, noun.extra), (last,)
 
 
 def _is_side(predicate: Predicate) -> bool:

@@ -103,7 +103,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _with_accompanied_members, _with_first_of_owned,
+        _without_vocatives, _with_accompanied_members, _with_first_of_owned, _with_things_of_several,
         _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
         _without_openings, _with_placed_subjects, _with_participles_of_posture, _with_purposes_of_places,
@@ -197,9 +197,42 @@ def _with_accompanied_members(chunks: list[Chunk]) -> list[Chunk]:
             after += _apart([chunks[i - 1]], chunks[i : i + 2], chunks[i].span)
             i += 2
             continue
+        end = _end_of_own_part(chunks, i)
+        if end is not None:  # 'you have the knife, with the blade facing the plate, and the spoon'
+            after += _apart([chunks[i - 1]], chunks[i + 1 : end], chunks[i + 1].span)
+            i = end
+            continue
         kept.append(chunks[i])
         i += 1
     return _with_last(kept, after)
+
+
+def _end_of_own_part(chunks: list[Chunk], at: int) -> int | None:
+    """Return the end of *, with its blade facing the plate* between an object and *, and* with the last one."""
+    aside = [type_at(chunks, at + k) for k in range(-2, 6)]
+    apart = {aside[2], aside[7]} <= {"COMMA", "CUT"} and aside[0] in ("TVERB", "BE")
+    if not apart or [aside[1], *aside[3:7]] != ["NP", "WITH", "NP", "PREP", "NP"]:
+        return None
+    listed = [type_at(chunks, at + k) for k in range(6, 9)]
+    aimed = last_word(chunks[at + 2].value.head) in AIMED_PARTS
+    joined = listed[0] in ("AND", "CUT") and listed[1] == "NP" and listed[2] in _ENDS
+    return at + 5 if aimed and joined else None
+
+
+def _with_things_of_several(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the plates are left of the jug with a fork on each of them* with a comma before *with*.
+
+    What is on *them* or on *each* is on the plates, and not on the jug.
+    """
+    for i in range(1, len(chunks) - 3):
+        if [type_at(chunks, i + k) for k in range(-1, 4)] != ["NP", "WITH", "NP", "PREP", "NP"]:
+            continue
+        last, several = chunks[i - 1].value, chunks[i + 3].value.pronoun in ("each", "both", "they")
+        before = [c.value for c in chunks[: i - 1] if c.type == "NP"]
+        single = not last.plural and not last.members and (bool(last.head) or last.pronoun == "it")
+        if several and single and type_at(chunks, i - 2) in ("PREP", "OF") and any(p.plural for p in before):
+            return [*chunks[:i], put_in("COMMA", chunks[i]), *chunks[i:]]
+    return chunks
 
 
 def _with_first_of_owned(chunks: list[Chunk]) -> list[Chunk]:
@@ -681,6 +714,13 @@ def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
         and type_at(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
         and chunks[at + 1].value[-1].dimension in ("size", "length", "height", "width", "thickness")
     )  # 'a rack of tubes, longest at the wall'  # fmt: skip
+    above = (
+        [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "ADV"] and type_at(chunks, at + 3) in _ENDS
+        and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
+        and chunks[at + 1].value[-1].dimension in ("size", "length", "height", "width", "thickness", "other")
+    )  # 'pans stacked on the rack, smallest on top'  # fmt: skip
+    if above:
+        return at + 3, None
     apart = apart or nearby
     nearest = (
         [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "NP"] and type_at(chunks, at + 3) in _ENDS

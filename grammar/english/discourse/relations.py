@@ -96,11 +96,29 @@ def _whole(entity: Entity) -> Entity:
     return entity.whole if entity.role is Role.PART and entity.whole is not None else entity
 
 
+_LATERAL = frozenset({"left", "right"})
+"""Relations after which *the other side* of a thing is the opposite one."""
+
+
 class Relations(Mentions):
     """Reader of predicates that tell a place."""
 
+    def _of_the_other_side(self, predicate: Predicate) -> Predicate:
+        """Return *A is left of B, and C on the other side of it* with the direction opposite to the one before."""
+        last = self.references.recent[0] if self.references.recent else None
+        relation = None if last is None or predicate.relation != "opposite" else last.relation
+        written = self.text[slice(*predicate.span)].casefold()
+        if last is None or " other side" not in written or relation not in _LATERAL or len(last.others) != 1:
+            return predicate
+        (phrase,) = predicate.arguments
+        named = phrase.pronoun == "it" or self.references.earlier(phrase) is last.others[0].itself
+        if not named or last.sentence < self.how.sentence - 1:
+            return predicate
+        return replace(predicate, relation=OPPOSITES[relation])
+
     def _relate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """State a relation between the subject and the arguments."""
+        predicate = self._of_the_other_side(predicate)
         relation = predicate.relation
         if "exactly" in predicate.adverbs and relation in EXACT:
             relation = f"exactly_{relation}"

@@ -28,6 +28,7 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -182,6 +183,10 @@ class Statements(Relations):
             return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
         elif relation == "state" and (self.references.lost or str(value).endswith("ing")):
             return  # 'fill the flask half full with the mixture you want to distill': the words can belong to others
+        elif relation == "state":
+            words = self.text[slice(*predicate.span)].casefold().split()
+            forms = [word for word in words if (form := verb_forms().get(word)) is not None and form.lemma == value]
+            value = forms[-1] if forms else value  # 'hidden', and not 'hide'
         self._add(relation, (subject,), (), value=value)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
@@ -245,6 +250,7 @@ class Statements(Relations):
                 self._say(self.references.picked(free[0], one[0]), one[0].predicates, one[0])
             return
         for phrase in predicate.arguments:
+            one_of_them = phrase.pronoun == "one" and phrase.determiner == "the"  # 'my mug, the big blue one'
             for adjective in phrase.adjectives:
                 name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
                 if adjective.degree is Degree.SUPERLATIVE and name is not None:
@@ -257,8 +263,9 @@ class Statements(Relations):
                     self._add(f"{adjective.word}most", (subject,), ())
                 elif adjective.dimension == "rank" and adjective.rank is not None and phrase.head not in GENERAL:
                     self._add("ordinal", (subject,), (), value=f"{adjective.rank} from left")
-                elif adjective.dimension in ("colour", "size", "material", "shape") and phrase.head:
+                elif adjective.dimension in ("colour", "size", "material", "shape") and (phrase.head or one_of_them):
                     self._add(adjective.dimension, (subject,), (), value=adjective.word)
+                    subject.itself.adjectives.add((adjective.dimension, adjective.word))
             if phrase.head and phrase.head not in GENERAL and phrase.determiner in ("a", "an"):
                 subject.itself.aliases.add(phrase.head)
                 self.references.renamed.append(subject.itself)

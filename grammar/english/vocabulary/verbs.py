@@ -169,13 +169,6 @@ PLACING_VERBS = word_set(
 """Verbs that say where things are put, which follow other commands as participles too, and whose object can be left out, because
 the text has just named it: *cut the bread and place in the basket*."""
 
-TREATING_VERBS = word_set(
-    "wash rinse soak clean scrub dry mix stir beat whisk boil cook bake fry roast heat warm steam simmer melt toast"
-    " chop cut slice peel grate mash blend knead iron sand paint dip dissolve chill cool freeze polish brush sterilize"
-    " sterilise marinate grind crush sew test weigh measure"
-)
-"""Verbs that say what is done to a thing, and where, but not where the thing is afterwards: *wash it in the sink*."""
-
 NAMED_LIKE_THINGS = word_set(
     "plant heap screw bolt glue nail tape strap spoon load thread pin slot hook press wedge clip clamp tip park group"
     " tie pack feed anchor angle top lower fit dot fill float cover position space spread stick stack pile line drop"
