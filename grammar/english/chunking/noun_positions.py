@@ -556,6 +556,8 @@ class NounFinder:
             if self._nouns.knows(before):  # 'the glass stands above …'
                 return False
             two_before = self.norms[back - 1] if back else ""
+            if back == 1 and two_before in PUT_VERBS | FIND_VERBS:
+                return True  # 'use top shelves for glasses'
             return two_before in DETERMINERS or two_before in POSSESSIVES or is_adjective(two_before)
         if (after in IS_FORMS and after != "'s") or (after in MODALS and after != "can"):
             return True
@@ -635,7 +637,7 @@ class NounFinder:
         if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]) and not adverbs | placed:
             return False  # but 'also, pack heavy items at the bottom', 'on the shelf, stack plates and bowls in piles'
         rest = self.norms[after : after + 12]
-        relative = next((i for i, norm in enumerate(rest) if i and norm in ("that", "which", "who")), len(rest))
+        relative = next((i for i, norm in enumerate(rest) if i and norm in _SUBORDINATE), len(rest))
         rest = rest[:relative]
         ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
         if rest[ends : ends + 1] == [","] and "and" in rest[ends:]:
@@ -963,6 +965,9 @@ _NEVER_NOUNS = word_set(
 NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")
 
 _CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", "?", ""})
+
+_SUBORDINATE = frozenset({"that", "which", "who", "so", "because", "since", "while", "although", "when", "until"})
+"""Words that begin a clause with a verb of its own."""
 
 _TOWARD = frozenset({"toward", "towards", "away", "inward", "inwards", "outward", "outwards"})
 """Words of the direction of what is turned."""

@@ -173,13 +173,14 @@ class VerbChunker(RelatorChunker):
 
     def _leaves_object_out(self, at: int) -> bool:
         """Return True for a command before a place, whose object is named before: *cut it and place in the box*."""
-        norm, begins = self.norms[at], self._previous() in JOINT_TYPES | {"", "ADVERB"}
+        before = next((chunk.type for chunk in reversed(self.chunks) if chunk.type != "ADVERB"), "")
+        norm, begins = self.norms[at], before in JOINT_TYPES | {""}
         if norm not in PLACING_VERBS or not begins or self.norms[at + 1] in ("of", "to", "for", "with", "from", "by"):
             return False
         placed = self._predicate_after(at) and self._match(at + 1) is not None
         if not placed and self._measure(at + 1) is None:
             return False
-        if self._previous() not in ("", "ADVERB", "CUT"):
+        if before not in ("", "CUT"):
             last = next((c for c in reversed(self.chunks) if c.type in FINITE | _COMMANDS | {"CUT"}), None)
             return last is not None and last.type in _COMMANDS
         return norm not in _NAMED_OR_PASSIVE and not IS_FORMS.intersection(self.norms[at:])

@@ -149,6 +149,11 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             _leave_out(inside, "another name of a thing does not say where it is")
             i = (closing or i) + 1  # 'the lower drawer (sometimes marked crisper)'
             continue
+        done = [c.type for c in inside] == ["NP", "PART"] and inside[0].value.determiner is None
+        if said and done:
+            _leave_out(inside, "how a thing is meanwhile is not where it is")
+            i = (closing or i) + 1  # 'place the sofa (cushions removed) in the truck'
+            continue
         if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
             subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
@@ -648,7 +653,7 @@ def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     while [type_at(chunks, end), type_at(chunks, end + 1)] == ["AND", "NP"]:
         end += 2
     noun = last_word(place.value.head)
-    single = not (place.value.plural or be.value.modal or not be.value.positive)
+    single = be.value.positive and (told or not place.value.plural) and be.value.modal in (None, "should", "must")
     fits = relator.preposition.phrase == "for" or (told and relator.preposition.phrase == "to")
     named = _names_things(thing)
     if not (single and fits and named and noun in _STORING and type_at(chunks, end) in _ENDS):

@@ -164,8 +164,8 @@ class Statements(Relations):
         value = predicate.value.word if predicate.value is not None else None
         relation = predicate.relation
         if predicate.degree is Degree.SUPERLATIVE and predicate.value is not None:
-            if subject.itself.members:
-                return  # 'the smallest' of them is one of them
+            if subject.itself.members or predicate.value.word in ("high", "low"):
+                return  # 'the smallest' of them is one of them; 'put it lowest on the cart' tells a place
             name = SUPERLATIVES.get((predicate.value.dimension, POLES.get(predicate.value.word, 0)))
             if name is not None:
                 self._add(name, (subject,), ())

@@ -24,7 +24,7 @@ _QUALITIES = word_set(
     " flavour flavor sound silence visibility access accessibility flexibility stability"
 )
 _ACTS = word_set(
-    "measure step stage phase task job action activity process operation turn move motion start beginning finish"
+    "measure delivery step stage phase task job action activity process operation turn move motion start beginning finish"
     " attempt try effort adjustment placement presentation preparation installation maintenance"
     " inspection measurement alignment orientation rotation transition conversation communication discussion"
     " interaction circulation navigation storage organisation organization consideration requirement"
@@ -51,7 +51,7 @@ _DIRECTIONS = word_set(
 _UNNAMED = word_set(
     "location area placement vicinity surrounding surroundings whereabouts world distance"
     " inch inches cm mm centimetre centimeter millimetre millimeter kilometre percent o'clock"
-    " lot number bit rest majority most least dozen"
+    " lot number enough bit rest majority most least dozen"
 )
 _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
@@ -111,7 +111,7 @@ _ONLY_VERBS = word_set(
 """Verbs that are not the names of things, as *hold* and *keep* are."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
-    " moving including having"
+    " including having"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
 _OF_CLAUSES = (
