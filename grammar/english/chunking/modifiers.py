@@ -141,7 +141,7 @@ class ModifierFinder(NounFinder):
 
     def _modifies(self, at: int, determined: bool) -> bool:
         norm, after = self.norms[at], self.norms[at + 1]
-        if norm in _TOOL_ADJECTIVES and not self._nounish(at + 1) and after not in ("one", "ones", "than"):
+        if norm in _TOOL_ADJECTIVES and not self._nounish(at + 1) and after not in ("one", "ones", "than", "of"):
             return False
         if norm[:1].isdigit() and "-" in norm:
             return self._nounish(at + 1)

@@ -1190,7 +1190,9 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
                 chunks[i + 1].type == "TVERB" and type_at(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head)
             )
         )
-        if contact:
+        stranded = [type_at(chunks, i + k) for k in (-1, 0, 2)] == ["NP", "NP", "ADV"]  # 'the box the pens are in'
+        stranded = stranded and type_at(chunks, i + 1) in ("BE", "VERB") and bool(chunks[i - 1].value.head)
+        if contact or (stranded and type_at(chunks, i + 3) in FINITE | _ENDS):
             found.append(put_in("REL", chunk))
         found.append(chunk)
     return found

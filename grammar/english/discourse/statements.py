@@ -184,10 +184,17 @@ class Statements(Relations):
         elif relation == "state" and (self.references.lost or str(value).endswith("ing")):
             return  # 'fill the flask half full with the mixture you want to distill': the words can belong to others
         elif relation == "state":
-            words = self.text[slice(*predicate.span)].casefold().split()
-            forms = [word for word in words if (form := verb_forms().get(word)) is not None and form.lemma == value]
-            value = forms[-1] if forms else value  # 'hidden', and not 'hide'
+            value = self._participle(value, predicate)
         self._add(relation, (subject,), (), value=value)
+
+    def _participle(self, lemma: str, predicate: Predicate) -> str:
+        """Return the participle for a state of a thing: *hidden* for *it is hidden*, *burning* for *burns*."""
+        forms = verb_forms()
+        written = [w for w in self.text[slice(*predicate.span)].casefold().split() if w in forms]
+        told = next((word for word in written if forms[word].lemma == lemma), None)
+        if told is None or forms[told].form not in ("s", "base"):
+            return told or lemma
+        return next((word for word, form in forms.items() if form.lemma == lemma and form.form == "ing"), lemma)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         pass
