@@ -42,6 +42,9 @@ class Chunker(FixedPhraseChunker):
                 self.chunks.append(Chunk("NP", at, at, you, (start, start)))
                 chunk.type = "VERB"
             self.chunks.append(chunk)
+            if self._object_left_out:
+                here, self._object_left_out = (chunk.span[1], chunk.span[1]), False
+                self.chunks.append(Chunk("NP", chunk.end, chunk.end, NounPhrase(here, pronoun="object"), here))
             at = chunk.end
             if self._denied_be is not None and chunk.type == "NP" and self.norms[at] not in ("of", "and", "or"):
                 self.chunks.append(Chunk("BE", at, at, self._denied_be, (chunk.span[1], chunk.span[1])))

@@ -15,6 +15,7 @@ from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.adjectives import is_material_noun
 from deixis.grammar.english.vocabulary.nouns import (
+    HOLDERS,
     PARTS,
     PLACES_OF,
     SUBSTANCES,
@@ -166,6 +167,7 @@ class Mentions(Drafting, ABC):
             p for p in phrase.predicates
             if besides is not None and (
                 (not new and self._bears(entity, p)) or _shares_support(phrase, relation, p)
+                or _is_packed(phrase, relation, p)
                 or (p.relation == "opposite" and relation in ("in_front", "behind") and len(p.arguments) == 1)
             )  # 'put it in front of the chair on the opposite side of the lamp'
         )  # fmt: skip
@@ -374,6 +376,16 @@ def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predica
     other = predicate.arguments[0]
     noun = last_word(other.head)
     return bool(noun) and not other.members and noun not in SURROUNDINGS | SURFACES | _FURNITURE
+
+
+def _is_packed(phrase: NounPhrase, relation: str | None, predicate: Predicate) -> bool:
+    """Return True for *in small bowls* after *on the tray*, which says what the subject is in, and not the tray."""
+    if relation is None or predicate.relation != "inside" or predicate.reversed or len(predicate.arguments) != 1:
+        return False
+    named = phrase.determiner in ("the", "this") or phrase.owner is not None
+    vessel = predicate.arguments[0]
+    bare = vessel.determiner is None and vessel.plural and vessel.owner is None and not vessel.members
+    return named and bare and last_word(vessel.head) in VESSELS | HOLDERS
 
 
 _NEXT_TO = frozenset({"next_to", "near", "in_front", "behind", "left", "right"})

@@ -24,7 +24,7 @@ _QUALITIES = word_set(
     " flavour flavor sound silence visibility access accessibility flexibility stability"
 )
 _ACTS = word_set(
-    "step stage phase task job action activity process operation turn move motion start beginning finish"
+    "measure step stage phase task job action activity process operation turn move motion start beginning finish"
     " attempt try effort adjustment placement presentation preparation installation maintenance"
     " inspection measurement alignment orientation rotation transition conversation communication discussion"
     " interaction circulation navigation storage organisation organization consideration requirement"
@@ -56,10 +56,12 @@ _UNNAMED = word_set(
 _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
-    "area date help law company light case work support state finish use reach rest stage rule second"
+    "measure area date help law company light case work support state finish use reach rest stage rule second"
     " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
+_STOREYS = word_set("top bottom upper lower middle lowest highest first second third")
+"""Words before *level* that make it a storey of a thing."""
 _SELDOM_THINGS = word_set("level pitch bit")
 """Such words that the ontology knows, and that are seldom things by themselves."""
 _ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude", "acy", "ability", "ibility", "logy")
@@ -155,6 +157,8 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     last = last_word(noun).rpartition("-")[2]  # 'eye-level'
     if last not in _WITHOUT_PLACE and nouns.knows(last):
         return True
+    if last == "level" and words[0] in _STOREYS:
+        return True  # 'on the bottom level'
     if last in _WITHOUT_PLACE:
         return len(words) > 1 and last in _KEPT
     return last in _CONCRETE or not last.endswith(_ENDINGS)
