@@ -135,7 +135,7 @@ def mean_without_facts(problem: Problem, unary: Array) -> float:
     >>> none = np.zeros((0, 2), np.int64)
     >>> unary = np.log(np.array([[3.0]]))
     >>> problem = Problem(none, none[:, 0], np.zeros((0, 1, 1), np.float32), unary, np.zeros(1))
-    >>> round(mean_without_facts(problem, unary) / np.log(3.0), 6)  # one map of weight 3, one of weight 1
+    >>> round(float(mean_without_facts(problem, unary) / np.log(3.0)), 6)  # one map of weight 3, one of weight 1
     0.75
     """
 
