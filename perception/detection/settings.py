@@ -202,6 +202,30 @@ class ViewpointSettings(_Thresholds):
 
 
 @dataclass(frozen=True, slots=True)
+class DensitySettings(_Thresholds):
+    """Thinning of bare points that are far denser on some surfaces than on others."""
+
+    sample_size: int = 10_000
+    """Number of points around which the spacing is measured. No scene or test tried depends on it."""
+    neighbours: int = 4
+    """Number of nearest points that give the spacing: those beside a point of a grid. No scene or test tried depends on
+    it."""
+    max_spacing: float = 0.05
+    """Metres. Points farther apart are not a surface on which objects can be seen. No scene or test tried depends on
+    it."""
+    dense_share: float = 0.1
+    """Fraction of the points that must be as dense as the densest surface. No scene or test tried depends on it."""
+    min_ratio: float = 6.0
+    """Ratio of the usual spacing to that of the densest points above which they are thinned; a camera gives up to 3
+    between directions. Tested by test_things_denser_than_their_table_are_found."""
+    thinned_ratio: float = 4.0
+    """Ratio of these spacings after thinning, at least. Tested by test_things_denser_than_their_table_are_found."""
+    max_cell: float = 0.005
+    """Metres. Maximum distance of thinned points, so that small objects keep enough of them. Tested by
+    test_things_denser_than_their_table_are_found."""
+
+
+@dataclass(frozen=True, slots=True)
 class HeightSettings(_Thresholds):
     """Separation of points above the table from the noise of the sensor."""
 
@@ -581,17 +605,17 @@ class OutlineSettings(_Thresholds):
 class NoteSettings(_Thresholds):
     """Conditions for notes about points that are not reported as objects."""
 
-    min_piece_points: int = 200
-    """Minimum number of points of a left-out piece for a note; fewer are hardly an object. Tested by
-    test_unreported_points_get_a_note."""
-    min_high_share: float = 0.02
-    """Number of points too high above the table, relative to those of its top, above which a note is given. Tested by
-    test_unreported_points_get_a_note."""
+    group_cell: float = 0.02
+    """Metres. Side of the cells of the grid on which left-out points are connected to groups. Tested by
+    test_every_raised_group_is_reported_or_counted."""
     min_discarded_share: float = 0.05
-    """Fraction of the points above the table in pieces too small or too low for objects, above which a note is given.
-    Tested by test_unreported_points_get_a_note."""
+    """Fraction of the points above the table in pieces too small or too low for objects, above which a note is given
+    even if they are scattered. Tested by test_points_in_very_small_pieces_get_a_note."""
     overhang: float = 0.1
     """Minimum distance in metres beyond the outline of the table that a piece over its edge reaches. Tested by
+    test_unreported_points_get_a_note."""
+    min_overhang_points: int = 200
+    """Minimum number of points beyond the edge of a piece that reaches over it. Tested by
     test_unreported_points_get_a_note."""
     min_overhang_share: float = 0.1
     """Fraction of such a piece that must be so far outside, and fraction that must be inside. Tested by
@@ -635,7 +659,7 @@ class DetectionSettings:
         Minimum number of points of an object, and its minimum length in metres.
     concavity, step
         Angle between two surfaces in radians, and height between them in metres, at which they are two objects.
-    scale, plane, viewpoint, top, heights, surface, supervoxels, boundaries, joining, outlines, notes
+    scale, density, plane, viewpoint, top, heights, surface, supervoxels, boundaries, joining, outlines, notes
         Thresholds of the steps.
     """
 
@@ -651,6 +675,7 @@ class DetectionSettings:
     concavity: float = math.radians(35.0)
     step: float = 0.0025
     scale: ScaleSettings = field(default_factory=ScaleSettings)
+    density: DensitySettings = field(default_factory=DensitySettings)
     plane: PlaneSettings = field(default_factory=PlaneSettings)
     viewpoint: ViewpointSettings = field(default_factory=ViewpointSettings)
     top: TableTopSettings = field(default_factory=TableTopSettings)
