@@ -156,6 +156,9 @@ class RelatorChunker:
             and self.norms[at + 1] not in ("to", "of", "by")
         ):
             return None
+        led = at > 0 and self.norms[at - 1] in ("on", "in", "to", "at", "into", "onto")
+        if self.norms[at] in ("inside", "outside") and led and self.nouns.adjective_before_noun(at):
+            return None  # 'on outside pouches'
         begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
         if self.norms[at] == "close" and begins and (self.nouns.is_determiner(at + 1) or self.norms[at + 1] == "and"):
             return None  # 'close the lid'

@@ -146,7 +146,7 @@ def compared_quality(chunks: list[Chunk], at: int) -> Run | None:
 
 
 def examples(chunks: list[Chunk], at: int) -> Run | None:
-    """Find examples of the things before: *small tools, such as files and awls, …*, *items like keys and coins …*.
+    """Find examples of the things before: *small tools, such as files and awls, …*, *tins including cans …*.
 
     Parameters
     ----------
@@ -163,10 +163,12 @@ def examples(chunks: list[Chunk], at: int) -> Run | None:
     apart = type_at(chunks, at) == "COMMA"
     first = at + apart
     before = chunks[at - 1] if at else None
-    if before is None or before.type != "NP" or type_at(chunks, first) != "PREP":
+    group = chunks[first].value if type_at(chunks, first) == "TPART" else None
+    including = isinstance(group, VerbGroup) and group.lemma == "include" and group.form == "ing"
+    if before is None or before.type != "NP" or not (including or type_at(chunks, first) == "PREP"):
         return None
-    word = chunks[first].value.preposition.phrase
-    if not before.value.plural and not (word == "such as" and apart):
+    word = "such as" if including else chunks[first].value.preposition.phrase
+    if not before.value.plural and not (word == "such as" and (apart or including)):
         return None
     general = last_word(before.value.head) in GENERAL
     if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in _COMMANDS))):

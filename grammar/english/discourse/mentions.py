@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.adjectives import is_material_noun
 from deixis.grammar.english.vocabulary.nouns import (
     HOLDERS,
     PARTS,
+    PEOPLE,
     PLACES_OF,
     SUBSTANCES,
     SURFACES,
@@ -369,6 +370,9 @@ def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predica
     What stands on the floor, or is a part of the room, is beside the desk itself: *on the desk next to the door*.
     """
     named = phrase.determiner == "the" or phrase.owner is not None
+    person = len(predicate.arguments) == 1 and last_word(predicate.arguments[0].head) in PEOPLE
+    if person and named and predicate.relation in ("in_front", "near", "next_to") and relation in ("on", "inside"):
+        return True  # 'on the tray in front of the guest'
     if relation != "on" or not named or phrase.plural or last_word(phrase.head) not in _SUPPORTS_OF_SEVERAL:
         return False
     if predicate.relation not in _NEXT_TO or len(predicate.arguments) != 1 or predicate.reversed:

@@ -450,6 +450,7 @@ class References:
         """Return True for *the plate* after *the butter plate* and *the side plate*, of which neither was called so."""
         bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
         named = [e for e in latest_first if _can_name(phrase.head, e) and not e.compared]
+        named = [e for e in named if e.noun != phrase.head or e.members or e.single or not e.plural]  # not 'bags'
         longer = {e.noun for e in named if e.noun != phrase.head and not e.was_called(phrase.head)}
         return bare and not phrase.predicates and len(longer) > 1 and len(named) == len(longer)
 

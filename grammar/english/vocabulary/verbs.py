@@ -159,7 +159,7 @@ PUT_VERBS = word_set(
     " tie shelve stow bury hide cram slip pack feed affix anchor angle straddle"
     " hammer tap pop chuck toss fling hitch latch staple stitch peg dab smear immerse submerge dock"
     " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan return"
-    " scoot snake wheel cluster layer stash nudge transfer shift display hoist squeeze settle deposit organize organise"
+    " scoot snake wheel cluster layer stash nudge transfer shift display hoist squeeze settle deposit organize organise lash"
 )
 
 PLACING_VERBS = word_set(
