@@ -137,6 +137,9 @@ class Chunker(FixedPhraseChunker):
         if self.norms[at + 1] in ("quarters", "quarter", "thirds", "third") and self.norms[at + 2] in _HALF_STATES:
             span = self.words[at].start, self.words[at + 2].end
             return Chunk("ADJP", at, at + 3, (Adjective(f"partly {self.norms[at + 2]}", "state", Degree.PLAIN, span),))
+        if self.norms[at].endswith(("-quarters", "-thirds")) and self.norms[at + 1] in _HALF_STATES:
+            span = self.words[at].start, self.words[at + 1].end
+            return Chunk("ADJP", at, at + 2, (Adjective(f"partly {self.norms[at + 1]}", "state", Degree.PLAIN, span),))
         if self.norms[at] in ("missing", "absent") and self._previous() == "BE":
             span = self.words[at].start, self.words[at].end
             return Chunk("ADJP", at, at + 1, (Adjective("missing", "state", Degree.PLAIN, span),))

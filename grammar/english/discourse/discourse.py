@@ -104,6 +104,9 @@ EACH_APART = re.compile(
 _FORBIDDEN = frozenset({"near", "next_to", "touching", "between", "against", "leaning", "opposite", "across", "facing"})
 """Relations that *no* denies, besides the directions: *no book touches the lamp*."""
 
+_PILING = frozenset({"stack", "pile", "bundle", "heap"})
+"""Commands whose verb names later what they made."""
+
 ABSENT = frozenset(["missing", "miss", "absent", "gone"])
 
 
@@ -388,6 +391,10 @@ class Discourse(Statements):
                 subject = _without_verb(subject)  # 'when the kettle boils'
             handled = self._introduce(subject)  # 'fold the napkin'
             if handled is not None:
+                verb = self.text[slice(*clause.span)].casefold().partition(" ")[0]
+                if verb in _PILING and clause.mood is Mood.COMMAND:  # 'stack the mats', and later 'the stack'
+                    handled.itself.aliases.add(verb)
+                    self.references.renamed.append(handled.itself)
                 self.references.recent.insert(0, Focus(handled, [], None, sentence))
                 self.references.named = []
             return

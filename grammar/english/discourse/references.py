@@ -391,7 +391,8 @@ class References:
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
                 and entity.born < self.sentence and entity.noun == phrase.head and not _agreement(entity, phrase),
                 entity.compared,
-                entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
+                phrase.head not in (entity.noun, *entity.aliases) and not entity.was_called(phrase.head),
+                -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
                 -entity.named if entity.noun != phrase.head else 0,  # 'the plate': the one that is named most often
             ),
@@ -656,6 +657,8 @@ class References:
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("it", "they") and self._is_lost(phrase):
             return None
+        if word == "they" and relation is None and besides is None and self._are_persons(phrase):
+            return None
         if word == "they" and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("they", "both", "all", "each", "these", "those"):
@@ -713,6 +716,11 @@ class References:
         if any(focus.sentence == self.sentence for focus in self.recent) or (self._left_out(phrase) is not None):
             return False
         return any(end <= phrase.span[0] and end - start > MIN_LOST for start, end in self.lost)
+
+    def _are_persons(self, phrase: NounPhrase) -> bool:
+        """Return True for *they* after persons of its sentence: *so that guests can sit while they fill their plates*."""
+        words = re.findall(r"[a-z]+", self.text[self.start : phrase.span[0]].casefold())
+        return any(word.endswith("s") and word[:-1] in PEOPLE for word in words)
 
     def _left_out(self, phrase: NounPhrase) -> Entity | None:
         """Return the object of an earlier clause of the sentence that says no place: *fold the napkin and put it …*."""

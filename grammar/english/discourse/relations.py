@@ -382,6 +382,8 @@ class Relations(Mentions):
 
     def _at_region(self, subject: Entity, relation: str, region: Region) -> None:
         arguments = () if region.of is None else (region.of,)
+        if region.term == "side" and region.of is None and region.value is None and relation in ("inside", "on", "to"):
+            return  # 'to the inside of the sides', which are parts of something
         if relation == "parallel":
             self._add("parallel", (subject,), arguments, value=" ".join(filter(None, (region.value, region.term))))
         elif relation in ("against", "touching", "leaning") and region.of is not None and region.of.role is Role.THING:
