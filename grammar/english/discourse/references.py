@@ -148,6 +148,7 @@ class References:
     holder: str | None = None  # relation of the phrase whose restrictions are read: 'in' for 'in the crate beside it'
     lost: list[Span] = field(default_factory=list)  # of the sentence, phrases that were not understood
     surface: Entity | None = None
+    surface_named: int = -1  # last sentence that names the surface
     named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
     doubtful: list[PronounUse] = field(default_factory=list)
     guesses: list[tuple[Span, Guess]] = field(default_factory=list)  # phrases whose antecedent is a close call
@@ -224,6 +225,7 @@ class References:
         if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another" and not other:
             if self.surface is None:
                 self.surface = Entity(noun, Role.SURFACE, born=self.sentence)
+            self.surface_named = self.sentence
             return self.surface
         worn = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"he", "she"} and last in REMOVABLE
         if last in PARTS and noun == last and not worn and (phrase.owner is not None or phrase.of is not None):
@@ -658,6 +660,9 @@ class References:
         if word in ("it", "this", "that", "itself"):
             pointed = self._pointed_at(phrase, relation, besides) if word == "this" else None
             chosen = pointed or self._singular(relation, besides)
+            here = [e for f in self.recent if f.sentence == self.sentence for e in (f.subject, *f.others)]
+            if relation is not None and here and chosen not in here and self.surface_named == self.sentence:
+                return self.surface  # 'the lamp isn't on the table, it hangs from the ceiling above it'
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
         if word in ("he", "she") and relation is not None:
