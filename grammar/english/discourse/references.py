@@ -699,9 +699,10 @@ class References:
         told = [f for f in self.recent if f.subject is not None]
         if len(self.pair) > 1 and told and told[0].subject in self.pair:
             return self.pair[0], self.pair[-1]  # 'the former is red, the latter is blue'
-        two = self.last_two_subjects(besides)
-        if two is not None:  # 'the knife is on the mat and the fork isn't; the latter …'
-            return two.members[0], two.members[-1]
+        here_told = [f for f in told[:2] if f.sentence == self.sentence and f.relation == told[0].relation]
+        subjects = [f.subject for f in here_told if f.subject is not None]
+        if len(subjects) > 1 and subjects[0] is not subjects[1]:
+            return subjects[1], subjects[0]  # 'the knife is on the mat and the fork isn't; the latter …'
         pair = next((f for f in told if f.others), None)
         for focus in told:
             if focus.subject is not None and not focus.subject.noun and len(focus.subject.members) > 1:
