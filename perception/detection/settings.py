@@ -131,6 +131,15 @@ class PlaneSettings(_Thresholds):
     max_standing_height: float = 0.35
     """Metres above a plane up to which a point stands on it: the height of a bottle. No scene or test tried depends on
     it."""
+    outline_sides: int = 8
+    """Number of directions in which a plane is measured for its outline, which has twice as many sides. No scene or
+    test tried depends on it."""
+    outline_inset: float = 0.01
+    """Metres inside its outline at which points are above or below a plane: those nearer are often the edge of the
+    table. Tested by test_the_edge_of_a_table_does_not_stand_on_its_underside."""
+    below_ratio: float = 1.5
+    """Tolerances below a plane at which a point is below it. Tested by
+    test_a_bar_across_the_table_is_not_the_table."""
     min_standing_share: float = 0.002
     """Fraction of all points that must stand on a plane that is not a floor: some objects, even few. Tested by
     test_a_table_with_few_objects_is_preferred_to_a_larger_floor, and

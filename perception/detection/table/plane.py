@@ -151,16 +151,21 @@ def table_plane(points: NDArray[np.float64], pose: CameraPose, settings: Detecti
 
 @dataclass(frozen=True, eq=False)
 class LevelPlane:
-    """Plane, the points on it (k, 3), and the number of points that stand on it."""
+    """Plane, the points on it (k, 3), and the numbers of points that stand on it and that are below it."""
 
     plane: Plane
     points: NDArray[np.float64]
     standing: int
+    below: int
 
     @property
     def score(self) -> int:
-        """Score of the plane as a table: its points, and ten times the points that stand on it."""
-        return len(self.points) + 10 * self.standing
+        """Score of the plane as a table: its points, and ten times those that stand on it, less ten times those below.
+
+        Standing points count up to the number of the plane's own, so that the side of a box among many objects does not
+        exceed the table. The sides of objects have points on both sides of their planes, a table has none below it.
+        """
+        return len(self.points) + 10 * (min(self.standing, len(self.points)) - self.below)
 
     def has_objects(self, total: int, settings: PlaneSettings) -> bool:
         """Return True if enough of ``total`` points stand on the plane to be objects.
@@ -226,7 +231,8 @@ def level_of(
         Plane with its points and the number of points that stand on it.
     """
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
-    return LevelPlane(plane, on, _standing(plane, on, free, settings))
+    lower = sample[plane.heights(sample) < -settings.below_ratio * tolerance]
+    return LevelPlane(plane, on, _standing(plane, on, free, settings), _standing(plane.turned(), on, lower, settings))
 
 
 def tolerance_at(points: NDArray[np.float64], pose: CameraPose, settings: PlaneSettings) -> NDArray[np.float64]:
@@ -341,11 +347,16 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
 
 
 def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:
-    """Return the number of ``free`` points that are above the rectangle around the points ``on`` the plane."""
+    """Return the number of ``free`` points that are above the outline of the points ``on`` the plane.
+
+    The outline is a polygon with sides in fixed directions, a little inside, because the edge of a table is often seen.
+    """
     if len(on) < 3:
         return 0
-    across = plane.across
+    turns = np.arange(settings.outline_sides) * np.pi / settings.outline_sides
+    across = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
     low, high = np.percentile(on @ across.T, (1, 99), axis=0)
-    heights, plan = plane.heights(free), free @ across.T
-    standing = (heights > settings.min_standing_height) & (heights < settings.max_standing_height)
-    return int((standing & ((plan >= low) & (plan <= high)).all(axis=1)).sum())
+    heights = plane.heights(free)
+    plan = free[(heights > settings.min_standing_height) & (heights < settings.max_standing_height)] @ across.T
+    inside = (plan >= low + settings.outline_inset) & (plan <= high - settings.outline_inset)
+    return int(inside.all(axis=1).sum())
