@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.outline import in_largest_piece
 from deixis.perception.detection.settings import DetectionSettings, PlaneSettings
 
 
@@ -160,12 +161,12 @@ class LevelPlane:
 
     @property
     def score(self) -> int:
-        """Score of the plane as a table: its points, and ten times those that stand on it, less ten times those below.
+        """Score of the plane as a table: its points, ten times those that stand on it, less three times those below.
 
         Standing points count up to the number of the plane's own, so that the side of a box among many objects does not
         exceed the table. The sides of objects have points on both sides of their planes, a table has none below it.
         """
-        return len(self.points) + 10 * (min(self.standing, len(self.points)) - self.below)
+        return len(self.points) + 10 * min(self.standing, len(self.points)) - 3 * self.below
 
     def has_objects(self, total: int, settings: PlaneSettings) -> bool:
         """Return True if enough of ``total`` points stand on the plane to be objects.
@@ -232,7 +233,9 @@ def level_of(
     """
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
     lower = sample[plane.heights(sample) < -settings.below_ratio * tolerance]
-    return LevelPlane(plane, on, _standing(plane, on, free, settings), _standing(plane.turned(), on, lower, settings))
+    piece = _largest_piece(plane, on)
+    standing, below = _standing(plane, piece, free, settings), _standing(plane.turned(), piece, lower, settings)
+    return LevelPlane(plane, on, standing, below)
 
 
 def tolerance_at(points: NDArray[np.float64], pose: CameraPose, settings: PlaneSettings) -> NDArray[np.float64]:
@@ -344,6 +347,15 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
     shares = np.maximum(0.3, 0.75 ** np.arange(rounds))
     normal, offset = refine(points, tolerance, plane.normal, plane.offset, shares)
     return Plane(normal, float(offset))
+
+
+def _largest_piece(plane: Plane, on: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the points (k, 3) of the largest connected piece of those ``on`` a plane (n, 3), without strips of walls."""
+    if len(on) < 3:
+        return on
+    plan = on @ plane.across.T
+    extents = np.subtract(*np.percentile(plan, (99, 1), axis=0))
+    return on[in_largest_piece(plan, 3 * float(np.sqrt(extents.prod() / len(on))))]
 
 
 def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:
