@@ -195,12 +195,15 @@ def name_places(
     boxes = [Box(*outline) for outline in outlines.tolist()]
     for index in sorted(range(len(boxes)), key=lambda index: boxes[index].area):
         surroundings = _Surroundings(boxes[index], np.delete(outlines, index, axis=0), list(found.values()), squares)
-        candidates = (
+        candidates = [
             candidate
             for candidate in _candidates(boxes[index], *sizes[index], most)
             if candidate.box.shared(np.array([frame]))[0] >= 0.999 * candidate.box.area
-        )
+        ]
         place = surroundings.cheapest(candidates, most)
+        if place is None:
+            surroundings.is_carried = False  # a name without its line is better than none
+            place = surroundings.cheapest(candidates, most)
         if place is not None:
             found[index] = place
     return [found.get(index) for index in range(len(boxes))]
@@ -242,7 +245,7 @@ class _Surroundings:
         carries = own.shared(others) >= WITHIN * own.area
         self._carriers, self._foreign = others[carries], others[~carries]
         sides = self._carriers[:, 2:] - self._carriers[:, :2]
-        self._is_carried = bool((sides.prod(axis=1) > LARGER * own.area).any())
+        self.is_carried = bool((sides.prod(axis=1) > LARGER * own.area).any())
         self._names = np.array([place.box for place in placed]).reshape(-1, 4)
         self._leaders = [place.leader for place in placed if place.leader is not None]
 
@@ -256,7 +259,7 @@ class _Surroundings:
             if box.shared(self._names).any() or any(crosses(line, np.array([box]))[0] for line in self._leaders):
                 continue
             on_carrier = box.shared(self._carriers) >= 0.999 * box.area
-            leader = None if candidate.inside else _leader(box, self._own, is_needed=self._is_carried)
+            leader = None if candidate.inside else _leader(box, self._own, is_needed=self.is_carried)
             total = candidate.cost + self._cost(candidate, on_carrier, leader)
             if total < least and (leader is None or self._is_clear(leader)):
                 best, least = NamePlace(box, candidate.rotation, leader), total
