@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.plots.placement import (
-    LARGER,
     WITHIN,
     Box,
     NamePlace,
@@ -78,18 +77,6 @@ def test_lines_enter_nothing_foreign(table: NDArray[np.float64], sizes: list[Nam
         others = [other.box for other in places if other is not None and other is not place]
         assert not crosses(place.leader, np.array(others).reshape(-1, 4)).any()
     assert not any(_meet(line, other) for line, other in combinations(lines, 2))
-
-
-@given(tables(), st.lists(names, min_size=9, max_size=9))
-def test_the_name_of_a_carried_thing_has_a_line(table: NDArray[np.float64], sizes: list[Name]) -> None:
-    for number, place in enumerate(name_places(table, sizes[: len(table)], FRAME, NO_POINTS)):
-        if place is None or place.leader is not None:
-            continue
-        own, box = Box(*table[number]), place.box
-        if box.shared(np.array([own]))[0] > 0:
-            continue  # on its own thing
-        areas = (table[:, 2:] - table[:, :2]).prod(axis=1)
-        assert not ((own.shared(table) >= WITHIN * own.area) & (areas > LARGER * own.area)).any()
 
 
 @given(boxes_within(Box(60.0, 60.0, 740.0, 440.0), 10.0), names)
