@@ -676,7 +676,7 @@ _RECOMMENDING = frozenset({"recommend"})
 """Verbs of writers whose *-ing* form is a command, unlike that of *suggest*: *we recommend placing it there*."""
 _RECOMMENDED_SO = word_set("do would 'd also highly strongly always really")
 """Words between a writer and what is recommended."""
-_TRYING = word_set("consider try recommend")
+_TRYING = word_set("consider try recommend begin start continue")
 """Verbs of commands whose *-ing* form is the command: *try placing it there*."""
 
 _USERS = word_set("you we they i people guests everyone")

@@ -464,6 +464,9 @@ class Builder(Transformer[Any, Built]):
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         told = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
         measured = last_word(noun.phrase.head).rpartition("-")[2] in _MEASURES  # 'at eye-level'
+        ranked = any(a.dimension in ("position", "rank") for a in noun.phrase.adjectives)
+        if noun.phrase.head == "level" and ranked and relation in ("on", "at", "inside"):
+            measured, relation = False, "on"  # 'on the bottom level'
         if (measured or told) and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             said = tuple(
@@ -982,7 +985,7 @@ _FASTENING = word_set(
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
 _SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
 _AMOUNTS = word_set(
-    "layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering heap"
+    "length layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering heap"
     " mound bit amount quantity helping cm mm centimetre centimeter millimetre inch gram g kg ml litre liter"
 )
 """Nouns of an amount, before the substance or the things that are meant."""

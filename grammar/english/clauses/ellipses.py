@@ -41,7 +41,7 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         _with_places_looked_at, _with_exceptions, _without_verbs_of_comparison, _with_shared_references,
         _without_order_in_lists, _without_colons_before_verbs, _without_kinds_of_members, _with_rows_after_places,
         _with_denied_participles_apart,
-        _with_members_apart, _with_contrasts_at_subjects,
+        _with_members_apart, _with_contrasts_at_subjects, _with_listed_places_apart,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -97,6 +97,30 @@ def _listed(chunks: list[Chunk], at: int) -> tuple[list[Chunk], int]:
         joined = "AND" in (type_at(chunks, i), type_at(chunks, i + 1))
         i += 1 + (type_at(chunks, i + 1) == "AND" and type_at(chunks, i) == "COMMA")
     return (found, i) if joined else ([], at)
+
+
+def _with_listed_places_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *jars on the top shelf, cups and mugs in the middle, pans at the bottom* as one note for each place."""
+    if any(chunk.type in FINITE | {"REL", "SUB", "COLON"} for chunk in chunks) or type_at(chunks, 0) not in (
+        "NP",
+        "PUT",
+    ):
+        return chunks
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        after = i + 1 + (type_at(chunks, i + 1) == "AND")
+        things = [c.value for c in chunks[after : after + 3 : 2] if c.type == "NP"]
+        listed = [type_at(chunks, after + k) for k in range(3)] == ["NP", "AND", "NP"] and len(things) == 2
+        placed = type_at(chunks, i - 2) == "PREP" and type_at(chunks, i - 1) == "NP"
+        own = type_at(chunks, after + 3) in ("PREP", "ADV") and type_at(chunks, after + 4) in ("NP", "COMMA", "CUT", "")
+        if chunk.type != "COMMA" or not (listed and placed and own):
+            found.append(chunk)
+            continue
+        landmark, relation = chunks[i - 1].value, chunks[i - 2].value.preposition.relation
+        bare = all(t.determiner is None and t.owner is None and t.plural and not t.pronoun for t in things)
+        apart = bare and landmark.determiner is not None and relation not in ("between", "among")
+        found.append(cut(chunk) if apart else chunk)
+    return found
 
 
 def _without_one_of_each_side(chunks: list[Chunk]) -> list[Chunk]:

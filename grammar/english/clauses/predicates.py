@@ -32,7 +32,7 @@ MOVING = frozenset(
 WRAPPING = {"cover": "on", "top": "on", "line": "on", "fill": "inside", "pack": "inside", "flank": "each_side"}
 """Relation of what a command uses to the thing that it changes: *cover the bowl with a cloth*."""
 _ATTACHING = word_set(
-    "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect"
+    "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect lash"
     " join fasten tie hook link stick pin clip clamp wire press"
 )
 """Verbs after which *to* means that two things touch."""
@@ -591,6 +591,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation, arguments = "facing", ()  # 'turn the label away from you'
     elif lemma in _ROTATING and relation in ("to", "facing", "pointing") and arguments:
         relation = "facing"  # 'its opening turned to the fire'
+    elif lemma == "fill" and relation in ("part", "top") and not any(a.startswith("at") for a in following.adverbs):
+        relation = "through"  # 'filled to the top'
     elif relation == "through" and lemma in _PASSING:
         relation = "inside"  # 'the bolt goes through the hole'
     elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):

@@ -134,7 +134,9 @@ UNREAL = re.compile(
     r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
     r"|\bin\s+(?:the|this|that|a)\s+(?:picture|photo(?:graph)?|painting|film|story|novel|dream)\s*[.!]?$"
     r"|\b(?:is|are)\s+due\s+(?:on|in|at|under|behind|next|back)\b"
-    rf"|^\s*(?:{_PUTTING})\s+(?!on|in|at|under|next|behind)[^,;:.]*?\b(?:is|are|was|can|may|will|would|helps?|makes?|keeps?|gives?|creates?|saves?|allows?|means?)\b"
+    rf"|^\s*(?:{_PUTTING})\s+(?!on|in|at|under|next|behind)[^,;:.]*?\b(?:is|are|was|can|may|will|would|makes?|gives?|creates?|means?)\b"
+    r"(?!\s+(?:also\s+|often\s+|usually\s+)?(?:an?\s+|the\s+)?(?:good|great|best|better|ideal|important|helpful|useful"
+    r"|convenient|easiest|safest|essential|key|perfect|help|save|keep|allow|ensure|reduce|free|protect)\b)"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )

@@ -106,6 +106,9 @@ _FORBIDDEN = frozenset(
 )
 """Relations that *no* denies, besides the directions: *no book touches the lamp*."""
 
+_PILING = frozenset({"stack", "pile", "bundle", "heap"})
+"""Commands whose verb names later what they made."""
+
 ABSENT = frozenset(["missing", "miss", "absent", "gone"])
 
 
@@ -132,6 +135,7 @@ class Discourse(Statements):
             self.references.lost = [problem.span for problem in sentence.misunderstood]
             self.condition = condition_of(sentence)
             self.elsewhere = self._other_viewpoint(sentence)
+            self.titled = sentence.place if sentence.heading else self.titled
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
             if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
                 self._ask_about(sentence.fragment)
@@ -389,6 +393,10 @@ class Discourse(Statements):
                 subject = _without_verb(subject)  # 'when the kettle boils'
             handled = self._introduce(subject)  # 'fold the napkin'
             if handled is not None:
+                verb = self.text[slice(*clause.span)].casefold().partition(" ")[0]
+                if verb in _PILING and clause.mood is Mood.COMMAND:  # 'stack the mats', and later 'the stack'
+                    handled.itself.aliases.add(verb)
+                    self.references.renamed.append(handled.itself)
                 self.references.recent.insert(0, Focus(handled, [], None, sentence))
                 self.references.named = []
             return

@@ -110,6 +110,7 @@ class Drafting:
         self.end = 0  # of the sentence in the text
         self.condition: str | None = None
         self.elsewhere: str | None = None  # words of the sentence by which another place than the viewer's is meant
+        self.titled: tuple[Predicate, ...] = ()  # place that the last heading names
         self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
         tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]
         past = sum(tenses)

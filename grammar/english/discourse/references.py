@@ -377,6 +377,8 @@ class References:
         latest_first = self._named_like(phrase.head)
         if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[0]] + self.words(phrase)):
             return None
+        if any(a.word == "matching" for a in phrase.adjectives):
+            return None  # 'align the pockets with the matching pockets'
         if any(a.word == "remaining" for a in phrase.adjectives):
             return self._remaining(phrase, latest_first)
         if self._is_ambiguous(phrase, latest_first):
@@ -391,7 +393,8 @@ class References:
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
                 and entity.born < self.sentence and entity.noun == phrase.head and not _agreement(entity, phrase),
                 entity.compared,
-                entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
+                phrase.head not in (entity.noun, *entity.aliases) and not entity.was_called(phrase.head),
+                -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
                 -entity.named if entity.noun != phrase.head else 0,  # 'the plate': the one that is named most often
             ),
@@ -421,9 +424,13 @@ class References:
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
             bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
+            if bare and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'folded napkins' after 'the paper napkins', 'used cards' after 'four cards'
             longer = entity.noun != phrase.head and not entity.was_called(phrase.head)
-            if bare and longer and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
-                continue  # 'folded napkins' after 'the paper napkins'
+            if bare and longer and entity.born < self.sentence - MAX_SENTENCES_TO_GROUP:
+                continue  # 'cups, mugs and plates' after 'measuring cups', long before
+            if _are_others(phrase, entity):
+                continue
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (
@@ -446,6 +453,7 @@ class References:
         """Return True for *the plate* after *the butter plate* and *the side plate*, of which neither was called so."""
         bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
         named = [e for e in latest_first if _can_name(phrase.head, e) and not e.compared]
+        named = [e for e in named if e.noun != phrase.head or e.members or e.single or not e.plural]  # not 'bags'
         longer = {e.noun for e in named if e.noun != phrase.head and not e.was_called(phrase.head)}
         return bare and not phrase.predicates and len(longer) > 1 and len(named) == len(longer)
 
@@ -636,6 +644,9 @@ class References:
         word = phrase.pronoun or ""
         if word in VIEWER_WORDS:
             return self.viewer
+        if word == "object":  # which a command leaves out: that of the command before
+            last = next((f for f in self.recent[:1] if f.sentence >= self.sentence - 1), None)
+            return last.subject if last is not None and last.subject and last.subject.role is Role.THING else None
         if word == "both" and phrase.of is not None and phrase.of.pronoun == "they" and not phrase.of.head:
             phrase = replace(phrase, of=None)
         if phrase.of is not None and word not in ("it", "they"):
@@ -647,6 +658,8 @@ class References:
                 return self.picked(self.member(group, phrase) or next(free, None) or next(group.leaves()), phrase)
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("it", "they") and self._is_lost(phrase):
+            return None
+        if word == "they" and relation is None and besides is None and self._are_persons(phrase):
             return None
         if word == "they" and (left_out := self._left_out(phrase)) is not None:
             return left_out
@@ -709,6 +722,11 @@ class References:
         if any(focus.sentence == self.sentence for focus in self.recent) or (self._left_out(phrase) is not None):
             return False
         return any(end <= phrase.span[0] and end - start > MIN_LOST for start, end in self.lost)
+
+    def _are_persons(self, phrase: NounPhrase) -> bool:
+        """Return True for *they* after persons of its sentence: *so that guests can sit while they fill their plates*."""
+        words = re.findall(r"[a-z]+", self.text[self.start : phrase.span[0]].casefold())
+        return any(word.endswith("s") and word[:-1] in PEOPLE for word in words)
 
     def _left_out(self, phrase: NounPhrase) -> Entity | None:
         """Return the object of an earlier clause of the sentence that says no place: *fold the napkin and put it …*."""
@@ -1070,6 +1088,14 @@ def _is_one_of_a_kind(phrase: NounPhrase, entity: Entity) -> bool:
     kind = entity.plural and not (entity.single or entity.members) and not phrase.plural and phrase.determiner == "the"
     told = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN and a.dimension in _OWN}
     return kind and bool(told) and not told & entity.adjectives
+
+
+def _are_others(phrase: NounPhrase, group: Entity) -> bool:
+    """Return True for *all other cards* and *these five cards* after *four cards*: more than the group has."""
+    if not (phrase.plural and group.members and group.noun):
+        return False
+    other = phrase.determiner == "other" or any(a.word == "other" for a in phrase.adjectives)
+    return (other and not any(leaf.is_picked for leaf in group.leaves())) or (phrase.count or 0) > group.size
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:
