@@ -20,7 +20,7 @@ from deixis.perception.detection.segmentation.parts import Parts
 from deixis.perception.detection.segmentation.supervoxels import supervoxels
 from deixis.perception.detection.segmentation.surface import Surface, surface_of
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.shown import Shows, is_large, is_one_object, is_small
+from deixis.perception.detection.shown import Shows, is_bare_table, is_large, is_one_object, is_small
 from deixis.perception.detection.table.heights import Raised, raised
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.table_top import table_top
@@ -179,8 +179,10 @@ def detect(
     begin(SEPARATING)
     found = _on_table(cloud, seen[settings.table - 1], settings) if seen else None
     alone = settings.table == 1 and len(points) >= settings.least_points
-    if alone and not _has_objects(found, seen, settings) and is_one_object(points, settings, len(seen)):
-        return _alone(cloud, view, settings)
+    if alone and not _has_objects(found, seen, settings):
+        bare = bool(seen) and is_bare_table(seen[0], settings)
+        if is_one_object(points, settings, len(seen), bare):
+            return _alone(cloud, view, settings)
     if found is None:
         return _nothing(cloud, view, settings, _no_table(settings, 0))
     if len(seen) > settings.table:

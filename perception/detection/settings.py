@@ -69,8 +69,12 @@ class ScaleSettings(_Thresholds):
     test_a_small_cloud_is_one_object_without_a_table."""
     max_object_length: float = 1.2
     """Metres. A longer cloud is not a single object. Tested by test_the_kind_of_a_cloud_is_reported."""
-    max_sheet_thickness: float = 0.03
-    """Metres. A thinner cloud as wide as a table is an empty table. Tested by test_the_kind_of_a_cloud_is_reported."""
+    min_sheet_share: float = 0.7
+    """Fraction of the points on one plane above which a cloud as wide as a table is a table: the faces of a box hold
+    less. Tested by test_a_table_with_objects_only_at_its_edge_is_a_table."""
+    min_whole_table_length: float = 0.48
+    """Metres. A shorter surface that is wholly in view is an object, such as a tray or a board. Tested by
+    test_a_flat_thing_without_a_table_is_one_object."""
     object_gap: float = 0.02
     """Metres. Cell size of the grid on which one object is connected. Tested by
     test_the_kind_of_a_cloud_is_reported."""
@@ -83,8 +87,8 @@ class ScaleSettings(_Thresholds):
     """Fraction of the points of a standing object that must be so far inside; an adjoining face has hardly any. Tested
     by test_the_kind_of_a_cloud_is_reported."""
     min_rim_share: float = 0.7
-    """Area of a supposed object on a face relative to that of the face, above which it is the rim of the face, or its
-    other side, as of a tray. Tested by test_the_rim_of_a_tray_is_not_an_object_on_a_table."""
+    """Area of a supposed object on a face relative to that of the face, and share of the directions in which something
+    rises at the outline of the face, above which it is the rim of the face, or its other side, as of a tray. Tested by test_the_rim_of_a_tray_is_not_an_object_on_a_table."""
     min_table_share: float = 0.12
     """Fraction of the points that must be on the table or its objects; below it, the cloud shows a room. No scene or
     test tried depends on it."""
@@ -131,6 +135,15 @@ class PlaneSettings(_Thresholds):
     max_standing_height: float = 0.35
     """Metres above a plane up to which a point stands on it: the height of a bottle. No scene or test tried depends on
     it."""
+    outline_sides: int = 8
+    """Number of directions in which a plane is measured for its outline, which has twice as many sides. No scene or
+    test tried depends on it."""
+    outline_inset: float = 0.01
+    """Metres inside its outline at which points are above or below a plane: those nearer are often the edge of the
+    table. Tested by test_the_edge_of_a_table_does_not_stand_on_its_underside."""
+    below_ratio: float = 1.5
+    """Tolerances below a plane at which a point is below it. Tested by
+    test_a_bar_across_the_table_is_not_the_table."""
     min_standing_share: float = 0.002
     """Fraction of all points that must stand on a plane that is not a floor: some objects, even few. Tested by
     test_a_table_with_few_objects_is_preferred_to_a_larger_floor, and

@@ -177,6 +177,8 @@ class JointChunker(VerbChunker):
         if norm in ("whatever", "whichever") and (last := self._end_of_free_relative(at + 1)) is not None:
             span = self.words[at].start, self.words[last - 1].end
             return Chunk("NP", at, last, NounPhrase(span, pronoun=norm))  # 'whatever I have used goes into it'
+        if norm == "without" and (form := self._verbs.get(after)) is not None and form.form == "ing":
+            return Chunk("NOT", at, at + 1, norm)  # 'without touching the plate'
         if norm in _WHOEVER:
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
@@ -184,10 +186,18 @@ class JointChunker(VerbChunker):
         if norm in ("before", "after") and previous in FINITE and self.chunks[-1].value.lemma == "come":
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'the salad fork comes before it'
         if norm in ("before", "after") and (
-            after in ("you", "we", "i") or after.endswith("ing") or self._clause_follows(at + 1)
+            after in ("you", "we", "i")
+            or after.endswith("ing")
+            or (self._clause_follows(at + 1) and not (norm == "before" and self._inverted_to_the_end(at + 1)))
         ):
             return Chunk("SUB", at, at + 1, norm)
         return None
+
+    def _inverted_to_the_end(self, at: int) -> bool:
+        """Return True for a place at the beginning and its subject at the end: *before the jug lies the cup*."""
+        rest = self.norms[at : next((k for k in range(at, len(self.norms)) if self.norms[k] == "."), len(self.norms))]
+        verbs = [k for k, word in enumerate(rest) if word in _LYING]
+        return not self.chunks and "," not in rest and bool(verbs) and self.nouns.is_determiner(at + verbs[0] + 1)
 
     def _goes_on_after(self, at: int) -> bool:
         """Return True for *then* inside a clause: *the lid is then placed on it*, *the cook then puts it on*."""
@@ -255,6 +265,8 @@ class JointChunker(VerbChunker):
 _THERE_STANDS = word_set("stands stand lies lie hangs hang sits sit stood lay hung sat")
 """Verbs after *there* that say that something is there."""
 
+_LYING = frozenset(["lies", "lie", "stands", "stand", "sits", "sit", "hangs", "hang", "is", "are"])
+"""Verbs between a place and its subject."""
 _CONJUNCTIONS = {"and": "AND", "plus": "AND", "or": "OR", "nor": "OR", "but": "BUT", "yet": "BUT", "then": "THEN"}
 
 _SUBORDINATING = {

@@ -111,6 +111,8 @@ class FixedPhraseChunker(JointChunker):
             return Chunk("ADVERB", at, at + 4, "as you can")  # 'as far from it as you can manage'
         if (examples := self._examples(at)) is not None:
             return Chunk("ADVERB", at, examples, "such as")
+        if norm == "as" and self.norms[at + 1] in ("seen", "viewed") and self.norms[at + 2] == "by":
+            return Chunk("PREP", at, at + 3, Relator(Preposition("as seen by", "-")))
         if (shown := self._as_shown(at)) is not None:
             return Chunk("ADVERB", at, shown, "as shown")
         for phrase in _idioms().get(norm, ()):

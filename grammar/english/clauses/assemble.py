@@ -681,6 +681,14 @@ class Assembly:
             plain = replace(phrase, determiner="the" if phrase.head else None, count=count, plural=True)
             phrase, group = plain, replace(group, positive=not group.positive)
             verb = replace(verb, group=group)
+        fronted = [p for p in (*predicates, *(q for part in verb.predications for q in part.predicates)) if p.arguments]
+        if phrase is not None and fronted and shape in ("existential", "inverted", "verbless"):
+            near = fronted[-1].arguments  # 'in front of the jug there is a cup, 15 cm away'
+            told = tuple(
+                replace(p, arguments=near) if p.measure is not None and not p.arguments and not p.part else p
+                for p in phrase.predicates
+            )
+            phrase = replace(phrase, predicates=told)
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
         main = flat(replace(verb, thing=None))

@@ -528,6 +528,7 @@ class Builder(Transformer[Any, Built]):
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
         last_part = last_word(noun.phrase.head).rpartition("-")[2]  # 'in an L-shape'
         shown = last_part in _PICTURES and noun.phrase.determiner in ("this", "that", "the")
+        shown = shown or noun.phrase.head in ("half circle", "half moon")
         if (last_part in ARRANGEMENTS | CIRCUMSTANCES or shown) and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             of_subject = noun.phrase.predicates if noun.phrase.determiner in ("a", "an", None) else ()
@@ -545,7 +546,12 @@ class Builder(Transformer[Any, Built]):
             return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
+        known_place = noun.phrase.head in ("place", "spot", "position") and noun.phrase.of is None
+        known_place = known_place and (
+            noun.phrase.determiner == "same" or any(a.word in _KNOWN for a in noun.phrase.adjectives)
+        )  # 'always in the same place'
         bare = noun.phrase.determiner is None and not noun.phrase.plural and bool(noun.phrase.head)
+        idle = idle or (known_place and not noun.phrase.predicates)
         idle = idle or (relator.preposition.phrase == "before" and bare and noun.phrase.count is None)
         idle = idle and noun.phrase.owner is None  # 'on display', but 'above your display'
         if idle or (plain and manner):
@@ -561,7 +567,7 @@ class Builder(Transformer[Any, Built]):
         value = None
         if relator.rank is not None:
             value = Adjective("ordinal", "rank", degree, prep.span, rank=relator.rank)
-        noun, again = _of_the_same(noun)
+        noun, again = _of_the_thing_placed(noun)
         extra = (*again, *extra)
         arguments = noun.phrase
         written = relator.preposition.phrase
@@ -863,7 +869,7 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
 
 
-def _of_the_same(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
+def _of_the_thing_placed(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     """Separate *on the same plate* from the thing that is there already: *beside the bread, on the same plate*."""
     phrase = noun.phrase
     last = phrase.predicates[-1] if phrase.predicates else None
@@ -986,6 +992,8 @@ _AMOUNTS = word_set(
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 
 
+_KNOWN = frozenset({"same", "usual", "right", "proper", "correct", "wrong", "appropriate"})
+"""Adjectives of a place that is not named."""
 _PICTURES = frozenset({"picture", "photo", "photograph", "image", "diagram", "video", "illustration", "drawing"})
 _POINTED_AT = frozenset({"spot", "point", "place", "location", "stage"})
 """Nouns after *at that*, which go back to a place named before."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
-from deixis.grammar.english.clauses.editing import cut, end_before, type_at
+from deixis.grammar.english.clauses.editing import cut, end_before, put_in, type_at
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.nouns import PARTS
@@ -39,7 +39,8 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         _with_there_as_being, _with_repeated_predicates, _with_ordinals_apart, _without_clefts,
         _without_clefts_of_places,
         _with_places_looked_at, _with_exceptions, _without_verbs_of_comparison, _with_shared_references,
-        _without_order_in_lists, _without_colons_before_verbs,
+        _without_order_in_lists, _without_colons_before_verbs, _without_kinds_of_members, _with_rows_after_places,
+        _with_denied_participles_apart,
         _with_members_apart, _with_contrasts_at_subjects, _with_listed_places_apart,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -200,6 +201,43 @@ def _without_colons_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Return *Bin: should be under the sink* as *bin should be under the sink*."""
     labelled = [type_at(chunks, k) for k in range(2)] == ["NP", "COLON"] and type_at(chunks, 2) in FINITE
     return [chunks[0], *chunks[2:]] if labelled else chunks
+
+
+def _without_kinds_of_members(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *three cups, one red and two white, stand …* without what its members are like."""
+    for i in range(1, len(chunks)):
+        group = chunks[i - 1].value if type_at(chunks, i - 1) == "NP" and chunks[i].type in ("COMMA", "CUT") else None
+        if group is None or (group.count or 0) < 2 or not group.head:
+            continue
+        end = i + 1
+        while type_at(chunks, end) in ("AND", "CUT", "ADJP") or (
+            type_at(chunks, end) == "NP"
+            and not chunks[end].value.head
+            and bool(chunks[end].value.count or chunks[end].value.pronoun == "one")
+        ):
+            end += 1
+        kinds = [c for c in chunks[i + 1 : end] if c.type == "NP"]
+        if len(kinds) > 1 and type_at(chunks, end) in ("COMMA", "CUT") and type_at(chunks, end + 1) in FINITE:
+            return [*chunks[:i], *chunks[end + 1 :]]
+    return chunks
+
+
+def _with_denied_participles_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *it lies left of the plate without touching it* with a comma, so that it is said of the subject."""
+    for i in range(len(chunks) - 1, 0, -1):
+        if chunks[i].type == "NOT" and chunks[i].value == "without" and chunks[i - 1].type == "NP":
+            chunks = [*chunks[:i], put_in("COMMA", chunks[i]), *chunks[i:]]
+    return chunks
+
+
+def _with_rows_after_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *on the shelf, from left to right, stand the cups* with the order first."""
+    for i in range(1, len(chunks) - 1):
+        order = chunks[i].type == "ADV" and chunks[i].value.preposition.relation == "row"
+        aside = {type_at(chunks, i - 1), type_at(chunks, i + 1)} <= {"COMMA", "CUT"}
+        if order and aside and type_at(chunks, i + 2) in FINITE | {"PUT"} and chunks[0].type == "PREP":
+            return [chunks[i], *chunks[: i - 1], *chunks[i + 2 :]]
+    return chunks
 
 
 def _without_ends_of_the_past(chunks: list[Chunk]) -> list[Chunk]:

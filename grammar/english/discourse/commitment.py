@@ -54,7 +54,7 @@ CONDITION = re.compile(
     r"(?:as|so)\s+long\s+as|(?:only|even)\s+if|on\s+condition|depending\s+on)\b"
     r"|\s*(?:given|granted|with)\s+(?:any\s+|a\s+bit\s+of\s+|enough\s+|sufficient\s+|more\s+)?"
     r"(?:luck|room|space|time)\b[^,.;?]*,"
-    r"|\s*(?:should|were)\s+(?!be\b)[^,.;?]*,",
+    r"|\s*(?:should|were)\s+(?!be\b)[^,.;?]*,|\s*without\s+(?!\w+ing\b)[^,.;?]*,",
     re.IGNORECASE,
 )
 """Beginning of a sentence that holds under a condition: *if …*, *in the event of …, …*, *should it rain, …*."""
@@ -123,6 +123,7 @@ UNREAL = re.compile(
     r"|\bthe\s+(?:author|painter|artist|playwright|novelist|poet|director|engraver)\s+(?:has|had|puts|places|shows)\b"
     r"|,\s*an?\s+(?:error|mistake|slip|misprint)\b"
     r"|\bwhich\s+(?:i|we)\s+(?:doubt|deny|(?:do\s+not|don['\u2019]t)\s+(?:believe|think))\b"
+    r"|\b(?:sign|label|note|card|notice|poster|plaque|caption|sticker)\s+(?:reads?|says?)\s*:"
     r"|\bnothing\s+like\s+(?:as|so)\b"
     r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
     r"|\b(?:theory|theories|story|map|guidebook|article|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"

@@ -101,7 +101,9 @@ EACH_APART = re.compile(
 )
 """Words by which each thing of a subject has its own: *they are each behind a plate*, *they stand on a saucer each*."""
 
-_FORBIDDEN = frozenset({"near", "next_to", "touching", "between", "against", "leaning", "opposite", "across", "facing"})
+_FORBIDDEN = frozenset(
+    {"near", "next_to", "touching", "between", "against", "leaning", "opposite", "across", "facing", "pointing"}
+)
 """Relations that *no* denies, besides the directions: *no book touches the lamp*."""
 
 _PILING = frozenset({"stack", "pile", "bundle", "heap"})

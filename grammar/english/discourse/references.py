@@ -148,6 +148,7 @@ class References:
     holder: str | None = None  # relation of the phrase whose restrictions are read: 'in' for 'in the crate beside it'
     lost: list[Span] = field(default_factory=list)  # of the sentence, phrases that were not understood
     surface: Entity | None = None
+    surface_named: int = -1  # last sentence that names the surface
     named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
     doubtful: list[PronounUse] = field(default_factory=list)
     guesses: list[tuple[Span, Guess]] = field(default_factory=list)  # phrases whose antecedent is a close call
@@ -224,6 +225,7 @@ class References:
         if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another" and not other:
             if self.surface is None:
                 self.surface = Entity(noun, Role.SURFACE, born=self.sentence)
+            self.surface_named = self.sentence
             return self.surface
         worn = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"he", "she"} and last in REMOVABLE
         if last in PARTS and noun == last and not worn and (phrase.owner is not None or phrase.of is not None):
@@ -671,6 +673,9 @@ class References:
         if word in ("it", "this", "that", "itself"):
             pointed = self._pointed_at(phrase, relation, besides) if word == "this" else None
             chosen = pointed or self._singular(relation, besides)
+            here = [e for f in self.recent if f.sentence == self.sentence for e in (f.subject, *f.others)]
+            if relation is not None and here and chosen not in here and self.surface_named == self.sentence:
+                return self.surface  # 'the lamp isn't on the table, it hangs from the ceiling above it'
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
         if word in ("he", "she") and relation is not None:
@@ -699,9 +704,10 @@ class References:
         told = [f for f in self.recent if f.subject is not None]
         if len(self.pair) > 1 and told and told[0].subject in self.pair:
             return self.pair[0], self.pair[-1]  # 'the former is red, the latter is blue'
-        two = self.last_two_subjects(besides)
-        if two is not None:  # 'the knife is on the mat and the fork isn't; the latter …'
-            return two.members[0], two.members[-1]
+        here_told = [f for f in told[:2] if f.sentence == self.sentence and f.relation == told[0].relation]
+        subjects = [f.subject for f in here_told if f.subject is not None]
+        if len(subjects) > 1 and subjects[0] is not subjects[1]:
+            return subjects[1], subjects[0]  # 'the knife is on the mat and the fork isn't; the latter …'
         pair = next((f for f in told if f.others), None)
         for focus in told:
             if focus.subject is not None and not focus.subject.noun and len(focus.subject.members) > 1:

@@ -10,16 +10,20 @@ from deixis.perception.scene import OrientedBox, turned_axes
 MAX_HEIGHT = 0.04
 """Largest height in metres of a flat thing."""
 
+MAX_ELONGATION = 2.0
+"""Largest ratio of the sides of a rectangle of which a corner may be hidden."""
+
 EDGE, STEP = 0.004, 0.01
 """Distance in metres from a side of the rectangle within which a point is at this side, and the length of the pieces of
 a side that are seen or not."""
 
-MIN_SIDE = 0.5
-"""Minimum share of each side that is seen. A side touches a round thing in less than 0.4 of its length."""
+MIN_SIDE, MIN_CORNERS = 0.5, 3
+"""Minimum share of each side that is seen, or minimum number of corners. A side touches a round thing in less than 0.4
+of its length."""
 
 
 def is_rectangular(points: NDArray[np.float64], box: OrientedBox) -> bool:
-    """Return True if a flat thing shows at least half of each side of its box, so that it fills the box.
+    """Return True if a flat thing shows so much of the sides of its box, or of its corners, that it fills the box.
 
     Parameters
     ----------
@@ -31,12 +35,15 @@ def is_rectangular(points: NDArray[np.float64], box: OrientedBox) -> bool:
     Returns
     -------
     bool
-        False for a round thing, and for one that is high or of which a side is hidden.
+        False for a round thing, and for one that is high or long.
     """
     sides = np.array(box.extents[:2])
-    if box.extents[2] > MAX_HEIGHT or (sides < 2 * STEP).any():
+    if box.extents[2] > MAX_HEIGHT or sides.min() < 2 * STEP or sides.max() > MAX_ELONGATION * sides.min():
         return False
     own = ((points - np.array(box.centre)) @ turned_axes(box.yaw).T)[:, :2]
+    from_corner = [np.abs(own - (x, y) * sides / 2).max(axis=1).min() for x in (-1, 1) for y in (-1, 1)]
+    if sum(away < 2 * EDGE for away in from_corner) >= MIN_CORNERS:
+        return True
     for axis in (0, 1):
         pieces = int(np.ceil(sides[1 - axis] / STEP))
         for sign in (-1, 1):

@@ -479,7 +479,8 @@ def _constraints(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Pro
         for phrase, landmark in landmarks:
             positive = predicate.positive != (phrase.negated or phrase.determiner == "no")
             part = "" if predicate.subject_part is None else predicate.subject_part.head
-            positive = positive != (name == "facing" and part in {"back", "rear"})  # 'with its back to the door'
+            if name == "facing" and part in {"back", "rear"}:
+                name = "near"  # 'with its back to the door': the door is right behind it
             if phrase.negated and phrase.pronoun == "one":  # 'the desk with the lamp, not the one with the screen'
                 refused = _denied(replace(landmark, negated=False))
                 properties, relations = [*properties, *refused[0]], [*relations, *refused[1]]
@@ -509,11 +510,18 @@ def _constraints(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Pro
                 relations += _on_surface(landmark, positive)
             elif landmark.noun in SURROUNDINGS:
                 properties += _place(replace(predicate, positive=positive))
-                own = tuple(one for one in phrase.predicates if not one.arguments)  # 'on the right of the room, red'
+                own = tuple(  # 'on the right side of the room that is red'
+                    one for one in phrase.predicates if not one.arguments and one.relation in {"colour", "material"}
+                )
                 properties += _constraints(own, depth + 1)[0] if positive else ()
                 relations += _on_surface(landmark, positive)
             else:
                 degree = str(predicate.degree)
+                mutual = [one for one in landmark.relations if one.inverted and one.arguments == (Description(""),)]
+                if mutual and name != "between":  # 'the keyboard skewed to the monitor it is under'
+                    kept = tuple(one for one in landmark.relations if one not in mutual)
+                    landmark = replace(landmark, relations=kept)
+                    relations += [replace(one, arguments=(landmark,), inverted=False) for one in mutual]
                 if name == "with" and (upon := [one for one in landmark.properties if one.word in UPON]):
                     landmark = replace(
                         landmark, properties=tuple(one for one in landmark.properties if one not in upon)
