@@ -235,7 +235,7 @@ ELSEWHERE = re.compile(
 
 
 _ASKED = re.compile(
-    r"(?:if|in\s+case)\s+(?:you|anyone|anybody|someone|somebody|people|he|she|they|guests)(?:['\u2019](?:re|s)|\s+(?:are|is|ever|should))?\s+"
+    r"(?:if|in\s+case)\s+(?:you|any\s?(?:one|body)|some\s?(?:one|body)|people|he|she|they|guests)(?:['\u2019](?:re|s)|\s+(?:are|is|ever|should))?\s+"
     r"(?:asks?|asking|wonders?|wondering|looks?\s+for|looking\s+for|(?:needs?|wants?|like)\s+to\s+know)\b",
     re.IGNORECASE,
 )
