@@ -645,8 +645,8 @@ class References:
         if word in VIEWER_WORDS:
             return self.viewer
         if word == "object":  # which a command leaves out: that of the command before
-            last = next((f for f in self.recent[:1] if f.sentence >= self.sentence - 1), None)
-            return last.subject if last is not None and last.subject and last.subject.role is Role.THING else None
+            handled = next((f.subject for f in self.recent[:1] if f.sentence >= self.sentence - 1), None)
+            return handled if handled is not None and handled.role is Role.THING else None
         if word == "both" and phrase.of is not None and phrase.of.pronoun == "they" and not phrase.of.head:
             phrase = replace(phrase, of=None)
         if phrase.of is not None and word not in ("it", "they"):
