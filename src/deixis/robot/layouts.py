@@ -70,9 +70,9 @@ MAX_SLENDER_WIDTH, MAX_SLENDERNESS = 0.02, 2.5
 MAX_KNOB = 0.03
 """Largest extent in metres of a knob, a piece on the top of another thing."""
 
-SIZE_SPREAD_PRIOR, LOG_SIZE_ERROR = Spread((0.15, 0.15, 0.15), 2.0), 0.03
-"""Prior of the deviations of the logarithms of length, width and height, where few things were seen, and the error of
-such a logarithm."""
+SIZE_PRIOR = Spread((0.15, 0.15, 0.15), 2.0)
+"""Prior of the deviations of the logarithms of length, width and height. It is wide, since things may be partly hidden
+on any table."""
 
 SIZE_OUTLIERS, SIZE_SPREAD = 0.01, 0.8
 """Share of things that are of any size along an axis, and the least standard deviation of the logarithms of all sizes.
@@ -84,7 +84,7 @@ LOOKS_OUTLIERS = 0.002
 PIECE_SHARE, PIECE_HEIGHT = 0.7, 0.012
 """Share of a thing that lies over another one, and metres by which it rises above it, for a piece of that one."""
 
-OFFSET_OUTLIERS, OFFSET_AREA = 0.02, 0.7
+OFFSET_OUTLIERS, OFFSET_AREA = 0.05, 0.7
 """Share of offsets that are arbitrary, and side in metres of the area of arbitrary ones."""
 
 
@@ -332,13 +332,12 @@ class LearnedLayout:
         """
         measured = log_sizes(scene.objects)
         evidence = usual.copy()
-        prior = SIZE_SPREAD_PRIOR.fitted(self.experience.sizes.values(), LOG_SIZE_ERROR)
         spread = np.maximum(measured.std(axis=0), SIZE_SPREAD)
         chance = np.exp(-0.5 * ((measured - measured.mean(axis=0)) / spread) ** 2) / spread / np.sqrt(2 * np.pi)
         for place, role in enumerate(self.roles):
             seen = self.experience.sizes.get(role)
             if seen is not None and seen.count > 0.5:
-                likely = predictive(measured, seen, prior, LOG_SIZE_ERROR)
+                likely = predictive(measured, seen, SIZE_PRIOR)
                 ratios = np.log((1 - SIZE_OUTLIERS) * likely / chance + SIZE_OUTLIERS)
                 evidence[place] = ratios.sum(axis=1)
         return evidence
@@ -360,7 +359,8 @@ class LearnedLayout:
             if turned.any():  # a turned thing may have been moved too
                 moved = predictive(offset, seen, prior, OFFSET_ERROR, TURN_SHIFT).prod(axis=2)
                 density = np.where(turned[:, None] | turned[None, :], (density + moved) / 2, density)
-            table = np.log((1 - OFFSET_OUTLIERS) * density * OFFSET_AREA**2 + OFFSET_OUTLIERS)
+            values = np.log((1 - OFFSET_OUTLIERS) * density * OFFSET_AREA**2 + OFFSET_OUTLIERS)
+            table = np.where(values > 0, HELD_WEIGHT * values, values)
             np.fill_diagonal(table, 0.0)
             yield graph.index(first), graph.index(second), table
 
