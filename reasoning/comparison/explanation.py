@@ -29,6 +29,9 @@ NOTHING = -1
 KEPT_WITHIN = 12.0
 """Difference in nats to the best explanation beyond which an explanation is ignored."""
 
+TURNED_ELSEWHERE = 0.1
+"""Share of displaced things that lie in any direction; the others lie as they would in their places."""
+
 MAX_STEPS = 60
 """Maximum number of changes in the ascent from one start."""
 
@@ -262,6 +265,7 @@ class _Search:
         # A row and a column of zeros for what is not there.
         self.identity = np.pad(evidence.identity, ((0, 0), (0, 1)))
         self.turn = np.pad(evidence.turn, ((0, 0), (0, 1)))
+        self.turn_elsewhere = np.logaddexp(np.log(1 - TURNED_ELSEWHERE) + self.turn, np.log(TURNED_ELSEWHERE))
         self.tables = np.pad(evidence.tables, ((0, 0), (0, 1), (0, 1)))
 
     def values(self, states: _States) -> Array:
@@ -273,6 +277,8 @@ class _Search:
         filled = states.state == State.FILLED
         swapped = states.state == State.SWAPPED
         value += np.where(filled | swapped, self.turn[rows, states.thing], 0.0).sum(axis=1)
+        displaced = states.state == State.DISPLACED
+        value += np.where(displaced, self.turn_elsewhere[rows, states.thing], 0.0).sum(axis=1)
         value += self.cost[states.state, rows].sum(axis=1)
         value += evidence.odds.extra * (self.m - (states.thing != NOTHING).sum(axis=1))
         a, b = place[:, evidence.ends[:, 0]], place[:, evidence.ends[:, 1]]
@@ -301,8 +307,10 @@ class _Search:
             thing = np.full(self.n, NOTHING, dtype=np.int64)
             for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
                 thing[row] = column if column < self.m else NOTHING
-            state = np.where(thing == NOTHING, int(State.MISSING), int(State.FILLED)).astype(np.int64)
-            yield _States(thing[None], state[None], np.full((1, self.n), NOTHING, dtype=np.int64))
+            nobody = np.full((1, self.n), NOTHING, dtype=np.int64)
+            for seen in (State.FILLED, State.DISPLACED):
+                state = np.where(thing == NOTHING, int(State.MISSING), int(seen)).astype(np.int64)
+                yield _States(thing[None], state[None], nobody)
 
     def _with_facts(self) -> Array:
         """Return the looks of each role and thing, and the best value of each fact about it with any other thing."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.answers import count
 from deixis.grammar.script import Script
-from deixis.learning.layouts.experience import TOLERANCE, Experience, log_sizes, long_axis, predictive
+from deixis.learning.layouts.experience import TOLERANCE, Experience, Spread, log_sizes, long_axis, predictive
 from deixis.learning.lessons.lesson import layout_name
 from deixis.learning.lessons.scene_evidence import graph_evidence, named_by_candidates
 from deixis.ontology.graph.facts import Fact
@@ -42,6 +42,9 @@ MIN_TURN = np.deg2rad(28.0)
 TURN_DEVIATION = np.deg2rad(7.0)
 """Standard deviation of the direction of things in their places."""
 
+TURN_SHIFT = 0.05
+"""Standard deviation of the distance in metres by which a turned thing is moved along each axis."""
+
 MIN_TURN_OUTLIERS = 1e-4
 """Minimum share of things that lie at any angle without a mistake. It is a tenth with no table seen, and a tenth of
 that with each further one."""
@@ -51,12 +54,12 @@ OBSERVED_WEIGHT = 0.25
 """
 
 
-HELD_WEIGHT = 0.5
+HELD_WEIGHT = 0.6
 """Factor of the evidence of relations that hold, since those of one thing in its place depend on each other."""
 
-OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
-"""Prior standard deviation in metres of the offset between two things, and the weight of this prior as a number of
-tables."""
+OFFSET_SPREAD, OFFSET_ERROR = Spread((0.05, 0.05), 2.0), 0.005
+"""Prior of the deviation in metres of the offset between two things, where few tables were seen, and the error of an
+offset."""
 
 MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
 """Minimum height in metres at which a thing must rest on another one, and the error of the height of that one."""
@@ -67,8 +70,9 @@ MAX_SLENDER_WIDTH, MAX_SLENDERNESS = 0.02, 2.5
 MAX_KNOB = 0.03
 """Largest extent in metres of a knob, a piece on the top of another thing."""
 
-SIZE_DEVIATIONS, SIZE_PRIOR = (0.15, 0.15, 0.15), 2.0
-"""Prior standard deviations of the logarithms of length, width and height, and the number of things they count as."""
+SIZE_PRIOR = Spread((0.15, 0.15, 0.15), 2.0)
+"""Prior of the deviations of the logarithms of length, width and height. It is wide, since things may be partly hidden
+on any table."""
 
 SIZE_OUTLIERS, SIZE_SPREAD = 0.01, 0.8
 """Share of things that are of any size along an axis, and the least standard deviation of the logarithms of all sizes.
@@ -80,7 +84,7 @@ LOOKS_OUTLIERS = 0.002
 PIECE_SHARE, PIECE_HEIGHT = 0.7, 0.012
 """Share of a thing that lies over another one, and metres by which it rises above it, for a piece of that one."""
 
-OFFSET_OUTLIERS, OFFSET_AREA = 0.02, 0.7
+OFFSET_OUTLIERS, OFFSET_AREA = 0.05, 0.7
 """Share of offsets that are arbitrary, and side in metres of the area of arbitrary ones."""
 
 
@@ -277,8 +281,8 @@ class LearnedLayout:
         )
         if known.colours is not None:
             identity = identity + known.colours
-        boxes, turn, straight = self._poses(scene)
-        ends, kinds, tables = self._tables(boxes, len(scene.objects), ontology.relations)
+        boxes, turn, straight, origin = self._poses(scene)
+        ends, kinds, tables = self._tables(boxes, origin, len(scene.objects), ontology.relations)
         dispensable_roles = dispensable(self.graph.facts())
         optional = np.array([role in dispensable_roles for role in self.roles], dtype=bool)
         low, high = scene.boxes[:, 0, :2], scene.boxes[:, 1, :2]
@@ -288,14 +292,18 @@ class LearnedLayout:
             identity, turn, straight, ends, kinds, tables, optional, np.logical_not(over), pieces, odds or MistakeOdds()
         )
 
-    def _poses(self, scene: Scene) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Return boxes of all poses (p, 2, 3), the evidence of directions (n, p) and the straightened poses (n, m)."""
+    def _poses(self, scene: Scene) -> tuple[Array, Array, NDArray[np.int64], NDArray[np.int64]]:
+        """Return the poses of the things: first each as seen, then those that are laid straight.
+
+        The arrays are boxes (p, 2, 3), evidence of directions (n, p), straightened poses (n, m) and things (p,).
+        """
         n, m = len(self.roles), len(scene.objects)
         boxes = [np.array((thing.minimum, thing.maximum)) for thing in scene.objects]
         straight = np.full((n, m), NOTHING, dtype=np.int64)
         turn: list[Array] = [np.zeros(n) for _ in range(m)]
         usual = [self.axis(role) for role in self.roles]
         made: dict[tuple[int, int], int] = {}
+        origin = list(range(m))
         for t, thing in enumerate(scene.objects):
             seen = long_axis(thing)
             if seen is None or thing.oriented is None:
@@ -313,8 +321,9 @@ class LearnedLayout:
                         made[key] = len(boxes)
                         boxes.append(_lying(thing.oriented, axis, boxes[t]))
                         turn.append(np.zeros(n))
+                        origin.append(t)
                     straight[i, t] = made[key]
-        return np.array(boxes).reshape(len(boxes), 2, 3), np.stack(turn, axis=1), straight
+        return np.array(boxes).reshape(len(boxes), 2, 3), np.stack(turn, axis=1), straight, np.array(origin)
 
     def _sizes(self, scene: Scene, usual: Array) -> Array:
         """Return the evidence of sizes for each role's thing being each thing, shape (n, m).
@@ -328,7 +337,7 @@ class LearnedLayout:
         for place, role in enumerate(self.roles):
             seen = self.experience.sizes.get(role)
             if seen is not None and seen.count > 0.5:
-                likely = predictive(measured, seen, np.array(SIZE_DEVIATIONS), SIZE_PRIOR)
+                likely = predictive(measured, seen, SIZE_PRIOR)
                 ratios = np.log((1 - SIZE_OUTLIERS) * likely / chance + SIZE_OUTLIERS)
                 evidence[place] = ratios.sum(axis=1)
         return evidence
@@ -338,18 +347,25 @@ class LearnedLayout:
         graph = self.graph
         centres = boxes.mean(axis=1)[:, :2]
         offset = centres[None, :] - centres[:, None]  # (p, p, 2)
+        apart = self.experience.apart
         related = {tuple(sorted((fact.subject, fact.object))) for fact in graph.facts() if fact.subject != fact.object}
+        prior = OFFSET_SPREAD.fitted((seen for pair, seen in apart.items() if pair in related), OFFSET_ERROR)
         for first, second in sorted(related):
-            seen = self.experience.apart.get((first, second))
+            seen = apart.get((first, second))
             if seen is None or seen.count < 0.5:
                 continue
-            density = predictive(offset, seen, np.full(2, OFFSET_DEVIATION), OFFSET_PRIOR).prod(axis=2)
-            table = np.log((1 - OFFSET_OUTLIERS) * density * OFFSET_AREA**2 + OFFSET_OUTLIERS)
+            density = predictive(offset, seen, prior, OFFSET_ERROR).prod(axis=2)
+            turned = np.arange(len(boxes)) >= things
+            if turned.any():  # a turned thing may have been moved too
+                moved = predictive(offset, seen, prior, OFFSET_ERROR, TURN_SHIFT).prod(axis=2)
+                density = np.where(turned[:, None] | turned[None, :], (density + moved) / 2, density)
+            values = np.log((1 - OFFSET_OUTLIERS) * density * OFFSET_AREA**2 + OFFSET_OUTLIERS)
+            table = np.where(values > 0, HELD_WEIGHT * values, values)
             np.fill_diagonal(table, 0.0)
             yield graph.index(first), graph.index(second), table
 
     def _tables(
-        self, boxes: Array, things: int, relations: Relations
+        self, boxes: Array, origin: NDArray[np.int64], things: int, relations: Relations
     ) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
         """Return the roles of each expectation, its table, and the tables of log-likelihood ratios."""
         ends: list[tuple[int, int]] = []
@@ -367,6 +383,7 @@ class LearnedLayout:
                 values: Array = np.full(holds.shape, np.log((1 - share) / (1 - chance)))
                 values[holds] = np.log(share / chance)
                 table = weight * np.where(values > 0, HELD_WEIGHT * values, values)
+                table = np.maximum(table, table[np.ix_(origin, origin)])  # a turned thing may also count as it lies
                 np.fill_diagonal(table, 0.0)
                 place[key] = len(tables)
                 tables.append(table)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.learning.layouts.experience import Experience, Moments, log_sizes, long_axis, predictive
+from deixis.learning.layouts.experience import Experience, Moments, Spread, log_sizes, long_axis, predictive
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import OrientedBox, PerceivedObject
 from deixis.robot.layouts import LearnedLayout, _pieces, angle_between
@@ -94,6 +95,57 @@ def test_parts_of_things_are_pieces() -> None:
 def test_predictions_narrow_as_more_is_seen() -> None:
     few, many = Moments.of((0.0,)), Moments(30.0, (0.0,), (0.0,))
     at = np.array([[0.0], [0.2]])
-    middle, tail = zip(*(predictive(at, seen, np.array([0.05]), 2.0)[:, 0] for seen in (few, many)), strict=True)
+    middle, tail = zip(*(predictive(at, seen, Spread((0.05,), 2.0))[:, 0] for seen in (few, many)), strict=True)
     assert middle[1] > middle[0]
     assert tail[1] < tail[0]
+
+
+@pytest.mark.parametrize("deviation", [0.01, 0.1])
+def test_spread_is_fitted_to_several_quantities(deviation: float) -> None:
+    random = np.random.default_rng(3)
+    seen = [sum(map(Moments.of, random.normal(0, deviation, (3, 2)).tolist()), Moments()) for _ in range(200)]
+    found = Spread((0.05, 0.05), 2.0).fitted(seen, 0.0)
+    assert found.deviations == pytest.approx((deviation, deviation), rel=0.1)
+    assert found.weight > 10  # all deviate alike
+
+
+def test_unequal_quantities_give_a_spread_of_little_weight() -> None:
+    random = np.random.default_rng(4)
+    sizes = 0.01 * np.exp(random.normal(0, 1, 200))
+    seen = [sum(map(Moments.of, random.normal(0, size, (3, 2)).tolist()), Moments()) for size in sizes]
+    assert Spread((0.05, 0.05), 2.0).fitted(seen, 0.0).weight < 4
+
+
+def test_few_quantities_keep_the_stated_spread() -> None:
+    stated = Spread((0.05, 0.05), 2.0)
+    seen = [Moments.of((0.0, 0.0)) + Moments.of((0.01, 0.01)) for _ in range(3)]
+    assert stated.fitted(seen, 0.005) is stated
+    assert stated.fitted([Moments.of((0.0, 0.0))] * 9, 0.005) is stated
+
+
+def test_small_displacement_counts_where_tables_hardly_vary() -> None:
+    """A thing that moves by 15 cm is found if the tables of its layout differ by 1 cm only."""
+    from deixis.perception.scene import Scene
+    from deixis.reasoning.comparison.explanation import explain
+    from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
+
+    text = "layout place; left to right: fork, plate, knife, spoon; fork left of knife; cup above knife"
+    script = read_script(text=text)
+    roles = ("fork", "plate", "knife", "spoon", "cup")
+    middles = np.array([(-0.2, 0.0), (0.0, 0.0), (0.2, 0.0), (0.26, 0.0), (0.2, 0.25)])
+
+    def laid(places: np.ndarray) -> dict[str, PerceivedObject]:
+        return {role: thing(role, x, y) for role, (x, y) in zip(roles, places.tolist(), strict=True)}
+
+    def mistakes(spread: float) -> list[str]:
+        random = np.random.default_rng(1)
+        seen = [laid(middles + random.normal(0, spread, middles.shape)) for _ in range(4)]
+        tables = [Experience.of_table(roles, things, default_ontology().relations) for things in seen]
+        layout = LearnedLayout("place", script, sum(tables, Experience()))
+        moved = laid(middles - np.array([(0.15, 0.0), (0, 0), (0, 0), (0, 0), (0, 0)]))
+        named = [replace(one, label=role, candidates=((role, 0.99),)) for role, one in moved.items()]
+        evidence = layout.evidence(Scene(tuple(named)), default_ontology(), SHIPPED)
+        return [f"{one.kind} {layout.roles[one.roles[0]]}" for one in explain(evidence).mistakes]
+
+    assert mistakes(0.01) == ["displaced fork"]
+    assert mistakes(0.06) == []

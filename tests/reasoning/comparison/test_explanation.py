@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from deixis.reasoning.comparison.explanation import NOTHING, MistakeKind, TableEvidence, explain
+from deixis.reasoning.comparison.explanation import NOTHING, MistakeKind, MistakeOdds, TableEvidence, explain
 
 LOOKS = np.full((3, 3), -4.0) + 8.0 * np.eye(3)
 
@@ -52,6 +54,14 @@ def test_missing_and_extra_things_are_told_apart() -> None:
     assert mistakes(evidence(LOOKS[:, :2], [0, 1])) == [("missing", (2,), ())]
     looks = np.column_stack([LOOKS, np.full(3, -9.0)])
     assert mistakes(evidence(looks, [0, 1, 2, 3])) == [("extra", (), (3,))]
+
+
+def test_displaced_thing_usually_keeps_its_direction() -> None:
+    """A thing that lies askew is turned in its place rather than displaced, as far as the facts allow both."""
+    table = evidence(LOOKS, [0, 1, 2], turned=1)
+    table.tables[0, 3, :], table.tables[0, :, 3] = 0.0, 0.0  # nothing holds of the straightened thing
+    costs = replace(table, odds=MistakeOdds(displaced=-3.4, turned=-4.0))
+    assert mistakes(costs) == [("turned", (1,), (1,))]
 
 
 def test_turned_thing_is_compared_as_it_should_lie() -> None:

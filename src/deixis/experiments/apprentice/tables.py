@@ -3,12 +3,13 @@
 Only things that support no other thing are missing, displaced, swapped or turned, so that each counts as one mistake. A
 displaced thing clearly violates a fact of its layout by its new place; a turned one violates none by its box's place;
 two swapped things are of different kinds, fit in each other's place, and clearly violate a fact there; an extra
-thing stands free. Nothing lies across other things by mistake.
+thing stands free. The violated fact relates the thing to one that is in its place on the finished table: if both things
+of a fact were moved, it would not tell which one is wrong. Nothing lies across other things by mistake.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -103,8 +104,10 @@ def lay_tampered(script: Script, seed: int, mistakes: int | None = None) -> Tamp
         kind = list(MistakeKind)[int(rng.integers(len(MistakeKind)))]
         done = table.tamper(kind, rng)
         if done is not None:
-            table, names = done
-            made.append(TrueMistake(kind, names))
+            tampered, mistake = done[0], TrueMistake(kind, done[1])
+            if all(tampered.shows(one) for one in (*made, mistake)):
+                table = tampered
+                made.append(mistake)
     things = table.things_set_down() if made else laid.table.things
     top = top_under(things, colour=laid.table.top.colour) if made else laid.table.top
     return Tampered(replace(laid, table=LaidTable(top, things)), tuple(made))
@@ -142,6 +145,14 @@ class _Table:
                 return self._with({thing.name: moved}), (thing.name,)
         return None
 
+    def shows(self, mistake: TrueMistake) -> bool:
+        """Return whether a displaced or swapped thing clearly violates a fact about a thing that is in its place."""
+        if mistake.kind not in (MistakeKind.DISPLACED, MistakeKind.SWAPPED):
+            return True
+        things = [thing for thing in self.things if thing.name in mistake.names]
+        others = self.touched - set(mistake.names)
+        return any(self._violates(thing.name, thing, others) for thing in things)
+
     def _with(self, new: dict[str, LaidThing]) -> _Table:
         things = tuple(new.get(thing.name, thing) for thing in self.things)
         return replace(self, things=things, touched=self.touched | set(new))
@@ -165,14 +176,17 @@ class _Table:
             place = rng.uniform(self.region[0] + half, self.region[1] - half)
             moved = _shifted(thing, place - centre)
             far = np.linalg.norm(place - centre) >= MIN_DISPLACEMENT
-            if far and self._free(moved.box, (thing.name,)) and self._violates(thing.name, moved):
+            if far and self._free(moved.box, (thing.name,)) and self._violates(thing.name, moved, self.touched):
                 return moved
         return None
 
-    def _holding(self, name: str, box: Array) -> frozenset[int] | None:
-        """Return which firm facts about a thing hold if its box is elsewhere; None if none can be compared."""
+    def _holding(self, name: str, box: Array, without: Collection[str] = ()) -> frozenset[int] | None:
+        """Return which firm facts about a thing hold if its box is elsewhere; None if none can be compared.
+
+        Facts about the things ``without`` are left out.
+        """
         graph = self.script.graph().affirming()
-        boxes = {thing.name: thing.box[:, :2] for thing in self.things} | {name: box}
+        boxes = {thing.name: thing.box[:, :2] for thing in self.things if thing.name not in without} | {name: box}
         there = [
             number
             for number, fact in enumerate(graph.facts())
@@ -189,20 +203,13 @@ class _Table:
         found = self._holding(name, moved.box[:, :2])
         return found is None or min(found) >= 0
 
-    def _violates(self, name: str, moved: LaidThing) -> bool:
-        """Return whether one fact about a thing is clearly violated: also a little farther in any direction."""
+    def _violates(self, name: str, moved: LaidThing, without: Collection[str]) -> bool:
+        """Return whether a fact about a thing, except those about other ones, is violated also a little farther on."""
         box = moved.box[:, :2]
         shifts = ((0.0, 0.0), (CLEAR, 0.0), (-CLEAR, 0.0), (0.0, CLEAR), (0.0, -CLEAR))
-        found = [self._holding(name, box + np.array(shift)) for shift in shifts]
+        found = [self._holding(name, box + np.array(shift), without) for shift in shifts]
         return any(
             all(each is not None and number in each for each in found) for number in found[0] or () if number < 0
-        )
-
-    def _swap_violates(self, names: tuple[str, str], moved: tuple[LaidThing, LaidThing]) -> bool:
-        """Return whether one fact about either of two things is clearly violated in the places of each other."""
-        return any(
-            self._with({names[1 - i]: moved[1 - i]})._violates(names[i], moved[i])  # the other one is there already
-            for i in range(2)
         )
 
     def _turned(self, thing: LaidThing, rng: np.random.Generator) -> LaidThing | None:
@@ -234,8 +241,9 @@ class _Table:
                 fits = all(self._free(one.box, names) for one in moved) and not _overlap(
                     moved[0].box, moved[1].box, GAP
                 )
-                if fits and not borne and self._swap_violates(names, moved):
-                    return self._with(dict(zip(names, moved, strict=True))), names
+                swapped = self._with(dict(zip(names, moved, strict=True)))
+                if fits and not borne and swapped.shows(TrueMistake(MistakeKind.SWAPPED, names)):
+                    return swapped, names
         return None
 
     def _with_extra(self, rng: np.random.Generator) -> tuple[_Table, tuple[str, ...]] | None:

@@ -5,7 +5,7 @@ All of it is sums, so the order of the tables does not matter, and a table can b
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -29,6 +29,12 @@ ELONGATED = 1.7
 
 SIZE_ERROR = 0.01
 """Error of a size, in metres."""
+
+MIN_POOLED = 4
+"""Minimum number of quantities, each measured more than once, from whose deviations a prior is fitted."""
+
+MAX_SPREAD_WEIGHT = 20.0
+"""Maximum weight of a fitted prior, as a number of values."""
 
 COVERED = 0.5
 """Minimum share of a thing in plan above another thing at which its height is measured from its lower end.
@@ -293,7 +299,69 @@ def log_sizes(things: Sequence[PerceivedObject]) -> Array:
     return found
 
 
-def predictive(values: Array, seen: Moments, prior: Array, weight: float) -> Array:
+@dataclass(frozen=True)
+class Spread:
+    """Prior of the deviations of several quantities of one kind: usual deviation of each component, and its weight.
+
+    Attributes
+    ----------
+    deviations
+        Usual standard deviation of each component.
+    weight
+        Number of values as which the prior counts.
+    """
+
+    deviations: tuple[float, ...]
+    weight: float
+
+    def fitted(self, seen: Iterable[Moments], error: float) -> Spread:
+        """Return the prior that the deviations of some quantities suggest; this one where they are too few.
+
+        Parameters
+        ----------
+        seen
+            Moments of each quantity.
+        error
+            Standard deviation of the error of one measurement.
+
+        Returns
+        -------
+        Spread
+            The prior with the greatest marginal likelihood, by moments.
+
+        Notes
+        -----
+        The sample variances are scaled F variables if the true ones have a scaled inverse chi-square distribution. Its
+        scale and its degrees of freedom follow from the mean and the variance of their logarithms: G. K. Smyth, "Linear
+        models and empirical Bayes methods", Statistical Applications in Genetics and Molecular Biology 3, 2004.
+        """
+        from scipy.special import digamma, polygamma
+
+        several = [one for one in seen if one.count > 1.5]
+        if len(several) < MIN_POOLED:
+            return self
+        free = np.array([one.count - 1 for one in several])[:, None]
+        variances = np.stack([one.deviation for one in several]) ** 2 * (free + 1) / free + error**2
+        logs = np.log(variances) - digamma(free / 2) + np.log(free / 2)
+        middle = logs.mean(axis=0)
+        excess = float((logs - middle).var(axis=0, ddof=1).mean() - polygamma(1, free / 2).mean())
+        weight = MAX_SPREAD_WEIGHT if excess <= 0 else min(2 * _inverse_trigamma(excess), MAX_SPREAD_WEIGHT)
+        scale = np.exp(middle + digamma(weight / 2) - np.log(weight / 2))
+        return Spread(tuple(np.sqrt(scale).tolist()), weight)
+
+
+def _inverse_trigamma(value: float) -> float:
+    """Return the number whose trigamma function is a positive value, by Newton's method."""
+    from scipy.special import polygamma
+
+    found = 0.5 + 1 / value
+    for _ in range(20):
+        trigamma = float(polygamma(1, found))
+        found += trigamma * (1 - trigamma / value) / float(polygamma(2, found))
+    return found
+
+
+def predictive(values: Array, seen: Moments, prior: Spread, error: float = 0.0, moved: float = 0.0) -> Array:
     """Return the density of the next value of a quantity, for values of which some were seen.
 
     Parameters
@@ -303,9 +371,11 @@ def predictive(values: Array, seen: Moments, prior: Array, weight: float) -> Arr
     seen
         Values that were seen, at least one.
     prior
-        Prior standard deviations, shape (d,).
-    weight
-        Number of values that the prior counts as.
+        Prior of the deviations.
+    error
+        Standard deviation of the error of one measurement, which no value is more exact than.
+    moved
+        Standard deviation of what the next value differs by besides.
 
     Returns
     -------
@@ -320,9 +390,10 @@ def predictive(values: Array, seen: Moments, prior: Array, weight: float) -> Arr
     """
     from scipy.stats import t
 
-    n = seen.count
-    variance = (n * seen.deviation**2 + weight * np.asarray(prior) ** 2) / (n + weight) * (1 + 1 / n)
-    density: Array = t.pdf(values, n + weight - 1, seen.mean, np.sqrt(variance))
+    n, weight = seen.count, prior.weight
+    squares = n * seen.deviation**2 + (n - 1) * error**2 + weight * np.array(prior.deviations) ** 2
+    free = n - 1 + weight
+    density: Array = t.pdf(values, free, seen.mean, np.sqrt(squares / free * (1 + 1 / n) + moved**2))
     return density
 
 
