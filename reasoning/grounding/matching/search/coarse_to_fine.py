@@ -323,7 +323,7 @@ def _of_all_things(share: Messages, candidates: _Candidates, cells: _Cells) -> M
 
 def _by_evidence(candidates: _Candidates) -> Messages:
     """Return the probabilities of candidates (n1, K) by their evidence without facts."""
-    share = np.exp(candidates.unary - candidates.unary.max(axis=1, keepdims=True))
+    share: Messages = np.exp(candidates.unary - candidates.unary.max(axis=1, keepdims=True))
     share /= share.sum(axis=1, keepdims=True)
     return share
 
