@@ -7,12 +7,14 @@ probability of that thing, and the calibration error (ten bins), of all objects 
 objects whose match is decided, how many of those are right, and Wilson's 95 per cent interval, as if matches of one
 table were independent; then the mean and the greatest difference from the marginals of a run many times as long, at 30
 objects; and seconds by the clock and of the processor, beside the limit. ``--limit SECONDS`` is the time limit (default
-10).
+10). With ``--processor`` it counts seconds of the processor, so that other programs do not change the result.
 
 ``--only TEXT`` measures the arms whose line of ARMS contains the text, ``--tables N`` at most N tables of each arm,
 ``--no-limits`` calibration only. ``--values``
 prints instead how much more the best map that a search finds is worth than the true map, in nats, and the share of
-objects that it matches right: where it is worth much more, the model is wrong and not the search.
+objects that it matches right: where it is worth much more, the model is wrong and not the search. ``--information``
+prints what a search of any length could decide: chains that start from the true map at the posterior's own temperature,
+and the share of objects whose thing they have in 0.99 of the maps. ``--facts N`` replaces the facts per object.
 
 Limits: ten objects beside 20,000 labelled things, some of which have a unique label. Then whole scripts and scenes of
 1,000 to 20,000 objects. All are read from files, each in a process of its own: seconds by the clock and of the
@@ -35,7 +37,7 @@ from bench_faults import interval
 from numpy.typing import NDArray
 from records import command_line, figure, recorded, share
 
-from deixis.deadline import Deadline
+from deixis.deadline import CLOCK, Deadline
 from deixis.experiments.generated_tables import LAYOUTS, SETTING, generate, lay_boxes
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.recognition.calibration import expected_calibration_error
@@ -46,9 +48,11 @@ from deixis.reasoning.grounding.matching.posterior.coincidences import discounte
 from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
 from deixis.reasoning.grounding.matching.posterior.ladders import sampled_marginals
 from deixis.reasoning.grounding.matching.posterior.posterior import Posterior, posterior
-from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem, to_assignment
+from deixis.reasoning.grounding.matching.posterior.sampling import begin, guide_by, new_chains, sample
+from deixis.reasoning.grounding.matching.problem import MIN_PLACES, UNMATCHED, Problem, to_assignment
+from deixis.reasoning.grounding.matching.search.coarse_to_fine import CoarseToFine
 from deixis.reasoning.grounding.matching.search.scalable import scalable
-from deixis.reasoning.grounding.options import is_decided
+from deixis.reasoning.grounding.options import DECIDED, is_decided
 
 HELD_OUT = 100
 """Seed of the first table; the settings of the chains were chosen on tables of smaller seeds."""
@@ -64,6 +68,7 @@ ARMS = [  # layout, kinds known, objects, facts per object, share missing, table
     ("seats", False, 100, 6.0, 0.0, 3),
     ("seats", False, 300, 8.0, 0.1, 3),
     ("seats", False, 1000, 8.0, 0.1, 2),
+    ("seats", False, 1000, 8.0, 0.0, 2),
     ("clusters", True, 100, 2.5, 0.1, 6),
     ("clusters", True, 300, 6.0, 0.1, 3),
     ("clusters", False, 100, 6.0, 0.1, 6),
@@ -79,6 +84,8 @@ ARMS = [  # layout, kinds known, objects, facts per object, share missing, table
 QUICK_ARMS = [("seats", True, 30, 2.5, 0.1, 2), ("clusters", True, 100, 2.5, 0.1, 1)]
 LONGER = 4.0  # factor of proposals for the reference at REFERENCE_OBJECTS
 REFERENCE_OBJECTS = 30
+NEAR_TRUTH = 1e-4  # share of the probability of the first beliefs that is not at the true map
+TRUE_LADDERS, TRUE_COLDNESS, TRUE_SWEEPS = 4, (1.0, 0.9, 0.8), 400  # chains from the true map
 SHORT_LIMIT = 60.0  # seconds: enough even on a busy machine
 RARE, QUICK_RARE = (0, 2, 6), (6,)
 """Numbers of the ten described objects whose label is unique in the scene."""
@@ -117,24 +124,31 @@ def main() -> None:
     parser.add_argument("--tables", type=int, default=1000, help="maximum number of tables of an arm")
     parser.add_argument("--no-limits", action="store_true", help="calibration only")
     parser.add_argument("--values", action="store_true", help="only the values of the best and of the true map")
+    parser.add_argument("--information", action="store_true", help="only what chains from the true map decide")
+    parser.add_argument("--facts", type=float, help="facts per object, instead of those of each arm")
+    parser.add_argument("--processor", action="store_true", help="the limit counts seconds of the processor")
     parser.add_argument("--quick", action="store_true", help="a few cases of each")
     with recorded(parser) as options:
         quick = options.quick
         limit = options.limit
+        if options.processor:
+            vars(CLOCK)["now"] = time.process_time  # the clock of all deadlines of this process
         posterior(case(12, 2.5, 0)[0], Deadline.after(2.0))  # compile
         ladders.warm()
         first = options.seeds
-        if options.values:
-            _print_values([arm for arm in ARMS if options.only in " ".join(map(str, arm))], first)
+        chosen = [arm for arm in (QUICK_ARMS if quick else ARMS) if options.only in " ".join(map(str, arm))]
+        if options.facts is not None:
+            chosen = [(*arm[:3], options.facts, *arm[4:]) for arm in chosen]
+        if options.values or options.information:
+            (_print_values if options.values else _print_information)(chosen, first)
             return
         columns = (
             "right  said   calibration  right  said   calibration  decided  of which right               "
             "off, mean and most  clock"
         )
         print(f"layout    kinds  objects  facts  missing  {columns}   processor")
-        for arm in QUICK_ARMS if quick else ARMS:
-            if options.only in " ".join(map(str, arm)):
-                _calibration(*arm[:-1], min(arm[-1], options.tables), limit, first)
+        for arm in chosen:
+            _calibration(*arm[:-1], min(arm[-1], options.tables), limit, first)
         if options.no_limits:
             return
         print("\nobjects  unique labels         things  limit   clock   processor  memory  result")
@@ -156,6 +170,32 @@ def _print_values(arms: list[tuple[str, bool, int, float, float, int]], first: i
         print(
             f"{layout:8}  {'yes' if kinds else 'no':5}  {objects:7}  {facts:5}  {missing:7}  "
             f"{problem.value(best) - problem.value(right):18.0f} nats  {(best == right).mean():5.3f}",
+            flush=True,
+        )
+
+
+def _print_information(arms: list[tuple[str, bool, int, float, float, int]], first: int) -> None:
+    """Print the marginals of chains that start from the true map, for one table of each arm."""
+    print("layout    kinds  objects  facts  missing  right  said   above 0.99  of which right")
+    for layout, kinds, objects, facts, missing, _ in arms:
+        problem, truth = case(objects, facts, first, layout, kinds, missing)
+        known, width = problem.compiled, problem.unary.shape[1] + 1
+        near_truth = np.full((objects, width), NEAR_TRUTH / width, np.float32)
+        near_truth[np.arange(objects), truth] += 1.0 - NEAR_TRUTH
+        places = None if problem.places is None or not missing else problem.places(most=MIN_PLACES)
+        beliefs, placed = CoarseToFine(known, places).refined(near_truth)
+        guide, start = guide_by(beliefs, placed.allowed), guide_by(near_truth, placed.allowed, 1.0)
+        counts, burnt = np.zeros((2, objects, width), np.float32)
+        for ladder in range(TRUE_LADDERS):
+            chains, values = new_chains(placed, np.array(TRUE_COLDNESS)), np.zeros(len(TRUE_COLDNESS))
+            begin(chains, placed, start, ladder)
+            for number, sums in enumerate((burnt, counts)):
+                sample(chains, sums, values, placed, guide, TRUE_SWEEPS, 2 * ladder + number)
+        likeliest, probability = counts.argmax(axis=1), counts.max(axis=1) / counts[0].sum()
+        decided, right = (probability >= DECIDED) & (likeliest < width - 1), likeliest == truth
+        print(
+            f"{layout:8}  {'yes' if kinds else 'no':5}  {objects:7}  {facts:5}  {missing:7}  {right.mean():.3f}  "
+            f"{probability.mean():.3f}  {decided.mean():10.3f}  {(decided & right).sum()} of {decided.sum()}",
             flush=True,
         )
 

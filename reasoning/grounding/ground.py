@@ -33,8 +33,9 @@ from deixis.reasoning.grounding.reference.answer import Frame
 SENSITIVITY_SHARE = 0.1
 """Share of the time limit for computing what would change without each fact."""
 
-SECONDS_PER_NAME, MAX_MARGIN = 1e-4, 0.15
-"""Time reserved for building the answer: seconds per object and thing, and the maximum share of the time left."""
+SECONDS_PER_NAME, MAX_MARGIN = 1.5e-4, 0.15
+"""Time reserved for building the answer: seconds per object and thing on a quiet machine, and the maximum share of the
+time left."""
 
 SENSITIVITY_OUT_OF_TIME = "time limit reached before the sensitivity to each fact was computed"
 
@@ -70,7 +71,8 @@ def ground(
     """
     started = time.perf_counter()
     name_count = len(evidence.description.nodes) + len(evidence.things)
-    deadline = deadline.earlier(min(SECONDS_PER_NAME * name_count, MAX_MARGIN * deadline.left))
+    building = SECONDS_PER_NAME * name_count * deadline.slowness
+    deadline = deadline.earlier(min(building, MAX_MARGIN * deadline.left))
     sensitivity_seconds = SENSITIVITY_SHARE * deadline.left
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 
@@ -51,6 +51,9 @@ CLOCK = Clock()
 LAST_SHARE = 0.1
 """Share of a time limit that remains for the explanation if the verdict has used all of it."""
 
+MIN_MEASURED, MAX_SLOWNESS = 0.05, 30.0
+"""Processor seconds from which the slowness of a machine is measured, and the maximum slowness that counts."""
+
 LONGEST = 1_000_000.0
 """Longest time limit in seconds, 11 days; a longer one counts as none, because the system's waits cannot be as long."""
 
@@ -91,6 +94,8 @@ class Deadline:
     ----------
     at
         The moment in seconds of the clock; infinity means no limit.
+    begun
+        Seconds of the clock and of the processor at which the time limit began; now, by default.
 
     Examples
     --------
@@ -102,6 +107,9 @@ class Deadline:
     """
 
     at: float
+    begun: tuple[float, float] = field(
+        default_factory=lambda: (CLOCK.now(), time.process_time()), compare=False, repr=False
+    )
 
     @classmethod
     def after(cls, seconds: float | None) -> Self:
@@ -140,6 +148,18 @@ class Deadline:
         """True if no time is left."""
         return CLOCK.now() >= self.at
 
+    @property
+    def slowness(self) -> float:
+        """Seconds of the clock per second of the processor since the time limit began, at least 1.
+
+        Other programs slow this one down. Work whose duration is estimated before it begins takes that many times as
+        long as on a quiet machine.
+        """
+        clock, processor = CLOCK.now() - self.begun[0], time.process_time() - self.begun[1]
+        if math.isinf(self.at) or processor < MIN_MEASURED:
+            return 1.0
+        return min(max(1.0, clock / processor), MAX_SLOWNESS)
+
     def share(self, fraction: float) -> Self:
         """Return an earlier deadline, by which part of the time left is used up.
 
@@ -155,7 +175,7 @@ class Deadline:
         """
         if math.isinf(self.at):
             return self
-        return type(self)(min(self.at, CLOCK.now() + fraction * self.left))
+        return replace(self, at=min(self.at, CLOCK.now() + fraction * self.left))
 
     def for_reasons(self, time_limit: float) -> Self:
         """Return the deadline for finding the reasons of a verdict.
@@ -185,7 +205,7 @@ class Deadline:
         Deadline
             The earlier of the two.
         """
-        return type(self)(min(self.at, CLOCK.now() + seconds))
+        return replace(self, at=min(self.at, CLOCK.now() + seconds))
 
     def earlier(self, seconds: float) -> Self:
         """Return an earlier deadline, which leaves time for work after it.
@@ -200,4 +220,4 @@ class Deadline:
         Deadline
             The earlier deadline.
         """
-        return type(self)(self.at - seconds)
+        return replace(self, at=self.at - seconds)

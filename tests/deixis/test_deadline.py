@@ -69,3 +69,18 @@ def test_deadlines_do_not_pass_while_the_clock_stands_still(set_clock: Callable[
     assert deadline.left == 1.0
     set_clock(NOW + 61.0)
     assert deadline.passed
+
+
+def test_slowness_is_the_clock_over_the_processor(
+    set_clock: Callable[[float], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worked = [7.0]
+    monkeypatch.setattr("deixis.deadline.time.process_time", lambda: worked[0])
+    deadline = Deadline.after(10.0)
+    set_clock(NOW + 4.0)
+    assert deadline.slowness == 1.0  # too little work to tell
+    worked[0] += 0.5
+    assert deadline.slowness == deadline.share(0.5).slowness == deadline.within(1.0).slowness == 8.0
+    worked[0] += 7.5  # several processors
+    assert deadline.slowness == 1.0
+    assert Deadline.never().slowness == 1.0

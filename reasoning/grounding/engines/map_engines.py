@@ -248,7 +248,7 @@ def _posterior_notes(evidence: Evidence, probable: Posterior) -> tuple[str, ...]
 def _similarity(evidence: Evidence, deadline: Deadline) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:
     """Return the paper's similarity (n1, n2), whether it converged, and notes; zeros where there is no time."""
     cells = len(evidence.description.vocabulary) * len(evidence.scene.nodes) ** 2
-    if cells / SIMILARITY_CELLS_PER_SECOND > deadline.left + MAX_LATENESS:
+    if deadline.slowness * cells / SIMILARITY_CELLS_PER_SECOND > deadline.left + MAX_LATENESS:
         late = "time limit reached before the paper's similarity was computed: it is given as 0"
         return np.zeros(evidence.allowed.shape), False, (late,)
     found = paper_similarity(evidence, deadline=deadline)

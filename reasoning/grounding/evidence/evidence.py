@@ -29,7 +29,7 @@ from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.claims.claims import ClaimTables, claim_tables
-from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence, FactTables, hedged
+from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence, FactTables, SaidFacts, hedged
 from deixis.reasoning.grounding.evidence.facts.latent_places import place_ratios
 from deixis.reasoning.grounding.evidence.properties.candidates import Candidates, candidate_ratios
 from deixis.reasoning.grounding.evidence.properties.colours import colour_evidence
@@ -267,10 +267,10 @@ class Evidence:
         others = np.array([node != thing for node in self.scene.nodes])
         return replace(self, allowed=self.allowed & others[None, :], surface=thing)
 
-    def _with_claims(self, facts: FactTables, literal: float | None = None) -> Problem:
+    def _with_claims(self, facts: FactTables, stated: SaidFacts | None = None, literal: float = 0.0) -> Problem:
         """Return the matching problem of the tables of the facts, followed by those of the claims.
 
-        With the share of literal facts, absent objects have places; a shortlist has none.
+        With the different facts and the share of literal ones, absent objects have places; a shortlist has none.
         """
         ends, kinds, tables = facts.ends, facts.kinds, facts.tables
         if self._claimed is not None and len(self._claimed.ends):
@@ -279,8 +279,8 @@ class Evidence:
             kinds = np.concatenate([kinds, len(tables) + np.arange(len(more.ends), dtype=np.int64)])
             tables = np.concatenate([tables, more.tables])
         places, boxes = None, self.scene.boxes
-        if literal is not None and boxes is not None and len(boxes) and self.whole is None:
-            stated, of_claims = self._fact_evidence().ratios.facts, len(tables) - len(facts.tables)
+        if stated is not None and boxes is not None and len(boxes) and self.whole is None:
+            of_claims = len(tables) - len(facts.tables)
             places = partial(place_ratios, stated, boxes, literal, of_claims, self.scene.poses)
         return Problem(ends, kinds, tables, self.unary, self.absent, self.allowed, places)
 
@@ -348,7 +348,7 @@ class Evidence:
             return Problem(ends, kinds.ravel().astype(np.int64), tables, self.unary, absent, self.allowed)
         facts, unary = self._fact_evidence(), self.unary
         literal = facts.literal(unary, absent, self.allowed)
-        return self._with_claims(facts.tables(literal), literal)
+        return self._with_claims(facts.tables(literal), facts.ratios.facts, literal)
 
     @cached_property
     def upper_problem(self) -> Problem:
@@ -363,7 +363,8 @@ class Evidence:
         if known is None:
             boxes = self.scene.boxes
             assert boxes is not None
-            laying_out = SECONDS_PER_CELL * different_facts(self.description) * len(boxes) ** 2
+            cells = different_facts(self.description) * len(boxes) ** 2
+            laying_out = self.deadline.slowness * SECONDS_PER_CELL * cells
             known = FactEvidence.of(
                 self.description,
                 boxes,
@@ -397,9 +398,9 @@ class Evidence:
     def degree_table(self) -> NDArray[np.float64]:
         """Degree of each comparable fact by the pair's exact relation, shape (facts, relations + 1); last column 0."""
         degrees = self.description.vocabulary.degrees
-        sets = self.description.relation_sets[self.facts]
+        sets, place = np.unique(self.description.relation_sets[self.facts], return_inverse=True)
         member = (sets[:, None] >> np.arange(len(degrees))[None, :] & 1).astype(bool)
-        best = np.where(member[:, :, None], degrees[None, :, :], 0.0).max(axis=1, initial=0.0)
+        best = np.where(member[:, :, None], degrees[None, :, :], 0.0).max(axis=1, initial=0.0)[place.ravel()]
         denied = np.where(best > 0, 0.0, 1.0)
         table = np.where(self.description.affirmed[self.facts][:, None], best, denied)
         return np.concatenate([table, np.zeros((len(table), 1))], axis=1)

@@ -34,7 +34,7 @@ from deixis.reasoning.errors import OutOfTimeError, SettingError
 from deixis.reasoning.geometry.pairs import PairBlocks, PairGeometry, Surroundings
 from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.geometry.rectangle import box_relations, require_boxes
-from deixis.reasoning.grounding.evidence.facts.literalness import LITERAL, literal_share
+from deixis.reasoning.grounding.evidence.facts.literalness import LITERAL, LITERAL_PRIOR, literal_share
 from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees, log_likelihood_ratio, saying_degree
 from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, shipped_models
 from deixis.reasoning.grounding.matching.problem import Problem, empty_tables
@@ -43,6 +43,9 @@ Array = NDArray[np.float64]
 
 JUDGEMENT_SHARE = 0.2
 """Share of the time left for estimating how literally the facts are meant."""
+
+JUDGEMENT_SECONDS_PER_CELL = 1.7e-8
+"""Approximate seconds for the tables of both speakers, per pair of things and different fact."""
 
 SIDE = 256
 """Things on either side of a block of pairs: small enough for a processor's cache."""
@@ -251,7 +254,8 @@ class FactEvidence:
         """Estimate the share of facts that are meant literally, in [0, ``literalness.LITERAL``].
 
         The estimate uses the shipped models and the evidence without facts, as in
-        :class:`deixis.reasoning.grounding.matching.problem.Problem`.
+        :class:`deixis.reasoning.grounding.matching.problem.Problem`. Where the time does not suffice for the tables of
+        both speakers, it is the prior share.
 
         Parameters
         ----------
@@ -268,6 +272,9 @@ class FactEvidence:
             Expected share of literal facts.
         """
         shape = len(self.by_name), len(self.order)
+        seconds = JUDGEMENT_SECONDS_PER_CELL * int(self.kinds.max(initial=-1) + 1) * len(self.order) ** 2
+        if self.deadline.slowness * seconds > JUDGEMENT_SHARE * self.deadline.left:
+            return LITERAL * LITERAL_PRIOR
         alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, self.order])
         away = np.full(shape[0], ABSENT_LOG_ODDS) if absent is None else absent
         may = np.ones(shape, dtype=bool) if allowed is None else allowed[:, self.order]

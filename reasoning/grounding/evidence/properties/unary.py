@@ -326,6 +326,8 @@ def label_ratios(
     [[-0.1, 0.0], [7.1, 0.0]]
     """
     n1 = len(description.nodes)
+    if all(label is None for label in labels):
+        return LabelRatios(np.zeros((n1, len(labels))), np.ones((n1, len(labels)), dtype=bool), 0.0)
     known = naming(description, labels, kinds)
     right = np.where(known.fitted, 1.0, BROADER_WORD) * known.named
     confidence = np.array([label.confidence if label is not None else 0.0 for label in labels]) * (1 - error)

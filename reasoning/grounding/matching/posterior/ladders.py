@@ -32,6 +32,7 @@ from deixis.reasoning.grounding.matching.posterior.sampling import (
 )
 from deixis.reasoning.grounding.matching.posterior.starts import Starts, starts_of
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem
+from deixis.reasoning.grounding.matching.search.belief_propagation import likeliest_map
 from deixis.reasoning.grounding.matching.search.coarse_to_fine import CoarseToFine, is_large
 
 Array = NDArray[np.float64]
@@ -185,7 +186,7 @@ def warm() -> None:
     tables, ends = np.zeros((1, 2, 2), np.float32), np.array([[0, 1]])
     tiny = Problem(ends, np.array([0]), tables, np.zeros((2, 2)), np.zeros(2))
     next(_start(tiny.compiled, np.array([1.0, 0.5]), Deadline.never(), 0)[0].parts(1.0))
-    CoarseToFine(tiny.compiled, None).beliefs()
+    likeliest_map(CoarseToFine(tiny.compiled, None).beliefs()[0], tiny.compiled)
 
 
 @dataclass(frozen=True, eq=False)

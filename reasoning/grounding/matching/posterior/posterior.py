@@ -161,7 +161,7 @@ def posterior(
     if exact is not None:
         return exact
     n1, n2 = problem.unary.shape
-    if deadline.left <= belief_seconds(problem.compiled):
+    if deadline.left <= deadline.slowness * belief_seconds(problem.compiled):
         labels = np.full(n1, n2) if start is None else to_labels(start, n2)
         return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
     if not chains:
@@ -169,12 +169,13 @@ def posterior(
         return Posterior(beliefs, False, math.inf, is_propagated=True)
     places = None
     if problem.places is not None and len(problem.ends) and n2 >= MIN_PLACED_THINGS:
-        most = min(PLACES_SHARE * deadline.left / (SECONDS_PER_PLACE * len(problem.tables) * n2), MAX_PLACES)
+        each = deadline.slowness * SECONDS_PER_PLACE * len(problem.tables) * n2
+        most = min(PLACES_SHARE * deadline.left / each, MAX_PLACES)
         places = problem.places(most=int(most)) if most >= MIN_PLACES else None
     found = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
     error, likeliest = float(found.errors.max(initial=0.0)), None
     if is_large(problem.compiled):
-        maps = [likeliest_map(found.marginals.astype(np.float32), problem.compiled)]
+        maps = [likeliest_map(found.marginals.astype(np.float32), problem.compiled, deadline)]
         maps += [] if start is None else [to_labels(start, n2)]
         likeliest = to_assignment(max(maps, key=lambda labels: map_value(labels, found.problem)), n2)
     return Posterior(

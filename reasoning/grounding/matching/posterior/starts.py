@@ -115,18 +115,18 @@ def starts_of(problem: Compiled, places: NDArray[np.float32] | None, deadline: D
             beliefs, placed = beliefs_with_places(problem, places, deadline)
             return Starts(placed, (beliefs,), np.array([0.0]))
         propagation, before = CoarseToFine(problem, places), deadline.left
-        found = _with_run(None, *propagation.beliefs(deadline))
+        found = _with_run(None, *propagation.beliefs(deadline), deadline)
         seconds = before - deadline.left if math.isfinite(before) else 0.0
         while len(found.runs) < RUNS and deadline.left > (1.0 + SECONDS_OF_REFINEMENT) * seconds:
-            found = _with_run(found, *propagation.beliefs(deadline, seed=len(found.runs)))
+            found = _with_run(found, *propagation.beliefs(deadline, seed=len(found.runs)), deadline)
         if len(found.runs) > 1 and deadline.left > SECONDS_OF_REFINEMENT * seconds:
-            found = _with_run(found, *propagation.refined(found.beliefs.astype(np.float32), deadline))
+            found = _with_run(found, *propagation.refined(found.beliefs.astype(np.float32), deadline), deadline)
     return found
 
 
-def _with_run(starts: Starts | None, beliefs: NDArray[np.float32], placed: Compiled) -> Starts:
+def _with_run(starts: Starts | None, beliefs: NDArray[np.float32], placed: Compiled, deadline: Deadline) -> Starts:
     """Return the starts with one more run: its beliefs (n1, n2 + 1), and the problem with its places."""
-    value = map_value(likeliest_map(beliefs, placed), placed)
+    value = map_value(likeliest_map(beliefs, placed, deadline), placed)
     if starts is None:
         return Starts(placed, (beliefs,), np.array([value]))
     best = placed if value > starts.values.max() else starts.problem

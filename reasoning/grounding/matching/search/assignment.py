@@ -8,8 +8,49 @@ rows, each the maximum of gain minus price: their sum is the value, and any v >=
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.kernel import njit
+
+CELLS_PER_CLOCK_CHECK = 2e6
+"""Gains that are looked at between two looks at the clock, if each path ends soon."""
+
+
+def assign_until(gain: NDArray[np.float64], deadline: Deadline) -> NDArray[np.int64]:
+    """Return the column of each row in the best assignment, as far as the time allows.
+
+    Rows whose best column another row has stay unassigned if no path was computed for them in time.
+
+    Parameters
+    ----------
+    gain
+        Gain of each pair, shape (r, c + 1), -inf for pairs that are ruled out; the last column is that of staying
+        unassigned, with finite gains.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    ndarray
+        Column of each row, or c; shape (r,).
+
+    Examples
+    --------
+    >>> assign_until(np.array([[2.0, 1.0, 0.0], [2.0, 0.0, -5.0]]), Deadline.never()).tolist()
+    [1, 0]
+    """
+    rows, columns = gain.shape[0], gain.shape[1] - 1
+    column_of, row_of = np.empty(rows, np.int64), np.full(columns + 1, -1)
+    price, profit = np.zeros(columns), np.empty(rows)
+    waiting = _take_the_best(gain, column_of, row_of, profit)
+    part = max(1, int(CELLS_PER_CLOCK_CHECK / max(gain.size, 1)))
+    for first in range(0, len(waiting), part):
+        if deadline.passed:
+            column_of[waiting[first:]] = columns
+            break
+        _augment_all(waiting[first : first + part], gain, column_of, row_of, price, profit)
+    return column_of
 
 
 @njit(cache=True, nogil=True)
@@ -38,16 +79,23 @@ def solve_assignment(gain, column_of, price, profit):  # type: ignore[no-untyped
     rows, columns = gain.shape[0], gain.shape[1] - 1
     row_of = np.full(columns + 1, -1)
     price[:] = 0.0
-    waiting = _take_the_best(gain, column_of, row_of, profit)
-    distance, before = np.empty(columns), np.empty(columns, np.int64)
-    done = np.empty(columns, np.bool_)
-    for row in waiting:
-        if not _augment(row, gain, column_of, row_of, price, profit, distance, before, done):
-            return -np.inf
+    if not _augment_all(_take_the_best(gain, column_of, row_of, profit), gain, column_of, row_of, price, profit):
+        return -np.inf
     value = 0.0
     for row in range(rows):
         value += gain[row, column_of[row]]
     return value
+
+
+@njit(cache=True, nogil=True)
+def _augment_all(waiting, gain, column_of, row_of, price, profit):  # type: ignore[no-untyped-def]
+    """Augment from each of the rows; return false where there is no assignment."""
+    columns = gain.shape[1] - 1
+    distance, before = np.empty(columns), np.empty(columns, np.int64)
+    done, possible = np.empty(columns, np.bool_), True
+    for row in waiting:
+        possible = possible and _augment(row, gain, column_of, row_of, price, profit, distance, before, done)
+    return possible
 
 
 @njit(cache=True)

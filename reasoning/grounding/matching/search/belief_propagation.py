@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.problem import Compiled
-from deixis.reasoning.grounding.matching.search.assignment import solve_assignment
+from deixis.reasoning.grounding.matching.search.assignment import assign_until
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -82,7 +82,7 @@ def propagate(
     slots, width, now = len(problem.kind), problem.unary.shape[1], time.perf_counter()
     cells = 1.0 + slots * width**2
     levels = effort * min(LEVELS, MAX_CELLS / cells)
-    if levels < MIN_LEVELS or MIN_LEVELS * cells > CELLS_PER_SECOND * deadline.left:
+    if levels < MIN_LEVELS or deadline.slowness * MIN_LEVELS * cells > CELLS_PER_SECOND * deadline.left:
         return None
     wiring, costs = _wire(problem), _costs(problem)
     unary = np.where(problem.allowed, np.maximum(problem.unary, RULED_OUT), RULED_OUT).astype(np.float32)
@@ -101,7 +101,7 @@ def propagate(
         if left <= MIN_LEVELS * (now - before) * (1.0 - done):
             return None
         done += max(1.0 / levels, (now - before) / left)
-    return _one_to_one(belief, problem)
+    return _one_to_one(belief, problem, deadline)
 
 
 def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: int = STEPS) -> Messages:
@@ -387,7 +387,7 @@ def _normalised(messages: Messages) -> Messages:
     return messages
 
 
-def likeliest_map(beliefs: Messages, problem: Compiled) -> NDArray[np.int64]:
+def likeliest_map(beliefs: Messages, problem: Compiled, deadline: Deadline = Deadline.never()) -> NDArray[np.int64]:
     """Return the map with the largest product of probabilities.
 
     Parameters
@@ -396,18 +396,17 @@ def likeliest_map(beliefs: Messages, problem: Compiled) -> NDArray[np.int64]:
         Probability of each match, shape (n1, n2 + 1).
     problem
         The problem in the layout of compiled loops.
+    deadline
+        End of the time limit; objects whose likeliest thing another object has are left out after it.
 
     Returns
     -------
     ndarray
         Thing of each object, shape (n1,), with n2 for objects that are left out.
     """
-    return _one_to_one(np.log(np.maximum(beliefs, np.float32(1e-12))), problem)
+    return _one_to_one(np.log(np.maximum(beliefs, np.float32(1e-12))), problem, deadline)
 
 
-def _one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
-    """Return the map with the largest sum of log beliefs."""
-    gain = np.where(problem.allowed, belief.astype(np.float64), -np.inf)
-    labels, price, profit = np.empty(len(gain), np.int64), np.empty(gain.shape[1] - 1), np.empty(len(gain))
-    solve_assignment(gain, labels, price, profit)
-    return labels
+def _one_to_one(belief: Messages, problem: Compiled, deadline: Deadline) -> NDArray[np.int64]:
+    """Return the map with the largest sum of log beliefs, as far as the time allows."""
+    return assign_until(np.where(problem.allowed, belief.astype(np.float64), -np.inf), deadline)

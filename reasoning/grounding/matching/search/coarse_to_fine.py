@@ -16,12 +16,14 @@ from __future__ import annotations
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.matching.problem import Compiled
 from deixis.reasoning.grounding.matching.search.belief_propagation import (
     DAMPING,
@@ -146,7 +148,9 @@ class CoarseToFine:
         Parameters
         ----------
         deadline
-            End of the time limit; where the time is short, the levels have fewer rounds, but at least one.
+            End of the time limit. Where the time is short, the levels have fewer rounds, but at least one; past it, the
+            beliefs are those of the last level that was done, and the things of a cell share its probability by their
+            evidence without facts.
         seed
             Seed of the division into cells, on which the result depends in scenes with repetitions.
 
@@ -161,28 +165,34 @@ class CoarseToFine:
         while len(cells.sizes) < min(FIRST_CELLS, n2):
             cells, _ = cells.halves()
         levels = math.ceil(math.log2(max(cells.sizes.max(initial=1), 1)))
-        likelihoods, known = self._likelihoods(cells.order), self._evidence(cells.order)
+        known = self._evidence(cells.order)
         chosen = np.tile(np.arange(len(cells.sizes)), (n1, 1))
         facts = np.zeros((len(self.slots.kind), chosen.shape[1] + 1), np.float32)
         demand = np.zeros((n1, chosen.shape[1] + 1), np.float32)
-        for level in range(levels):
-            power = FIRST_POWER ** (1.0 - level / levels)
-            candidates = _candidates(known, self.problem.unary[:, -1], cells, chosen, power)
-            weights = _weights(likelihoods, cells, power)
-            until = deadline.share(1.0 / (levels - level + 2))
-            share, facts, _ = self._rounds(cells, candidates, weights, power, facts, demand, ROUNDS, until)
-            kept = np.sort(np.argpartition(-share[:, :-1], min(KEPT_CELLS, share.shape[1] - 1) - 1)[:, :KEPT_CELLS])
-            cells, halves = cells.halves()
-            chosen = halves[np.take_along_axis(candidates.cells[:, :-1], kept, axis=1)].reshape(n1, -1)
-            columns = np.column_stack([np.repeat(kept, 2, axis=1), np.full(n1, share.shape[1] - 1)])
-            demand = np.take_along_axis(demand, columns, axis=1)
-            facts = np.take_along_axis(facts, columns[self.slots.owner], axis=1)
         candidates = _candidates(known, self.problem.unary[:, -1], cells, chosen, 1.0)
-        weights = _weights(likelihoods, cells, 1.0)
-        share, _, problem = self._rounds(
-            cells, candidates, weights, 1.0, facts, demand, LAST_ROUNDS, deadline, self.places
-        )
-        return _of_all_things(share, candidates, cells), problem
+        done = candidates, cells, _by_evidence(candidates)
+        with suppress(OutOfTimeError):
+            likelihoods = self._likelihoods(cells.order, deadline)
+            for level in range(levels):
+                power = FIRST_POWER ** (1.0 - level / levels)
+                candidates = _candidates(known, self.problem.unary[:, -1], cells, chosen, power)
+                weights = _weights(likelihoods, cells, power, deadline)
+                until = deadline.share(1.0 / (levels - level + 2))
+                share, facts, _ = self._rounds(cells, candidates, weights, power, facts, demand, ROUNDS, until)
+                done = candidates, cells, share
+                kept = np.sort(np.argpartition(-share[:, :-1], min(KEPT_CELLS, share.shape[1] - 1) - 1)[:, :KEPT_CELLS])
+                cells, halves = cells.halves()
+                chosen = halves[np.take_along_axis(candidates.cells[:, :-1], kept, axis=1)].reshape(n1, -1)
+                columns = np.column_stack([np.repeat(kept, 2, axis=1), np.full(n1, share.shape[1] - 1)])
+                demand = np.take_along_axis(demand, columns, axis=1)
+                facts = np.take_along_axis(facts, columns[self.slots.owner], axis=1)
+            candidates = _candidates(known, self.problem.unary[:, -1], cells, chosen, 1.0)
+            weights = _weights(likelihoods, cells, 1.0, deadline)
+            share, _, problem = self._rounds(
+                cells, candidates, weights, 1.0, facts, demand, LAST_ROUNDS, deadline, self.places
+            )
+            return _of_all_things(share, candidates, cells), problem
+        return _of_things_in_cells(*done, known[0]), self.problem
 
     def refined(self, beliefs: Messages, deadline: Deadline = Deadline.never()) -> tuple[Messages, Compiled]:
         """Return the marginals of belief propagation that begins at given beliefs, and the problem with places.
@@ -280,14 +290,15 @@ class CoarseToFine:
             fits += self.adder[:, here] @ np.log(likelihoods)
         return fits
 
-    def _likelihoods(self, order: NDArray[np.int64]) -> NDArray[np.float32]:
+    def _likelihoods(self, order: NDArray[np.int64], deadline: Deadline = Deadline.never()) -> NDArray[np.float32]:
         """Return each table's likelihoods in the order of the things, (k, n2, n2), divided by the largest one.
 
-        One thing for two objects has likelihood 0.
+        One thing for two objects has likelihood 0. Raise OutOfTimeError past the deadline.
         """
         kinds, n2 = len(self.problem.tables) // 2, len(order)
         likelihoods = np.empty((kinds, n2, n2), np.float32)
         for kind in range(kinds):
+            _require_time(deadline)
             np.exp(self.problem.tables[kind][np.ix_(order, order)] - self.largest[kind], out=likelihoods[kind])
             np.fill_diagonal(likelihoods[kind], 0.0)
         return likelihoods
@@ -306,6 +317,31 @@ def _of_all_things(share: Messages, candidates: _Candidates, cells: _Cells) -> M
     is_real[:, -1] = True
     things = np.append(cells.order, len(cells.order))[candidates.cells]
     np.add.at(found, (np.nonzero(is_real)[0], things[is_real]), share[is_real])
+    found /= found.sum(axis=1, keepdims=True)
+    return found
+
+
+def _by_evidence(candidates: _Candidates) -> Messages:
+    """Return the probabilities of candidates (n1, K) by their evidence without facts."""
+    share: Messages = np.exp(candidates.unary - candidates.unary.max(axis=1, keepdims=True))
+    share /= share.sum(axis=1, keepdims=True)
+    return share
+
+
+def _of_things_in_cells(
+    candidates: _Candidates, cells: _Cells, share: Messages, likelihoods: NDArray[np.float64]
+) -> Messages:
+    """Return the probabilities of cells (n1, K) as those of all things and of absence, (n1, n2 + 1).
+
+    The things of a cell share its probability in proportion to their likelihoods (n1, n2), in the order of the cells.
+    """
+    n1, count = len(share), len(cells.sizes)
+    of_cells = np.zeros((n1, count + 1))
+    np.add.at(of_cells, (np.arange(n1)[:, None], candidates.cells), np.where(candidates.unary > RULED_OUT, share, 0.0))
+    sums = np.maximum(np.add.reduceat(likelihoods, cells.start[:-1], axis=1), 1e-300)
+    found = np.zeros((n1, len(cells.order) + 1), np.float32)
+    found[:, cells.order] = likelihoods * np.repeat(of_cells[:, :-1] / sums, cells.sizes, axis=1)
+    found[:, -1] = np.maximum(of_cells[:, -1], 1e-30)
     found /= found.sum(axis=1, keepdims=True)
     return found
 
@@ -340,12 +376,23 @@ def _order_of_things(problem: Compiled, seed: int) -> NDArray[np.int64]:
     return order
 
 
-def _weights(likelihoods: NDArray[np.float32], cells: _Cells, power: float) -> NDArray[np.float32]:
-    """Return the powers of mean likelihoods of pairs of cells, (2k, cells, cells): each table, then each transposed."""
+def _require_time(deadline: Deadline) -> None:
+    if deadline.passed:
+        raise OutOfTimeError("time limit reached before belief propagation came to single things")
+
+
+def _weights(
+    likelihoods: NDArray[np.float32], cells: _Cells, power: float, deadline: Deadline = Deadline.never()
+) -> NDArray[np.float32]:
+    """Return the powers of mean likelihoods of pairs of cells, (2k, cells, cells): each table, then each transposed.
+
+    Raise OutOfTimeError past the deadline.
+    """
     kinds, count, sizes = len(likelihoods), len(cells.sizes), cells.sizes
     weights = np.empty((2 * kinds, count, count), np.float32)
     pairs = np.maximum(np.outer(sizes, sizes) - np.diag(sizes), 1).astype(np.float32)
     for kind, table in enumerate(likelihoods):
+        _require_time(deadline)
         sums = np.add.reduceat(np.add.reduceat(table, cells.start[:-1], axis=0), cells.start[:-1], axis=1)
         weights[kind] = (sums / pairs) ** np.float32(power)
         weights[kinds + kind] = weights[kind].T

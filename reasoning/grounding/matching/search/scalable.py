@@ -220,7 +220,7 @@ def _propagated(
     found = propagate(compiled, mean_range(compiled), deadline.share(0.5), effort=effort, seed=seed)
     if found is None and is_large(compiled) and not deadline.passed:
         beliefs, _ = CoarseToFine(compiled, None).beliefs(deadline.share(0.5), seed=seed)
-        found = likeliest_map(beliefs, compiled)
+        found = likeliest_map(beliefs, compiled, deadline)
     if found is None:
         return _annealed(labels, compiled, deadline, seed + 1, effort, most)
     climb(found, compiled, deadline)

@@ -116,12 +116,13 @@ def ground(
 
 def _learned(memory: Path | None) -> tuple[Meaning, dict[str, Attribute]]:
     """Return the words and sizes that a memory has learned, or the shipped ones without a memory, and adjectives."""
+    if memory is None:
+        from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
+
+        return SHIPPED, {}
     from deixis.memory.episodes.blackboard import has_episodes
-    from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
     from deixis.session import Session
 
-    if memory is None:
-        return SHIPPED, {}
     with Session(memory) as session:
         if not has_episodes(memory):
             session.memory()  # raises MemoryFormatError without a memory

@@ -198,7 +198,7 @@ class GroundingRequest:
         if things <= MIN_SHORTLISTED * objects:
             return False
         needed = required_gigabytes(objects, things, len(self.graph), different_facts(self.graph))
-        return needed > self.memory_limit or things**2 > PAIRS_PER_SECOND * self.due.left
+        return needed > self.memory_limit or things**2 * self.due.slowness > PAIRS_PER_SECOND * self.due.left
 
     @cached_property
     def memory_limited(self) -> bool:

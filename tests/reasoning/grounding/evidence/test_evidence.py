@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,10 +12,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError
+from deixis.experiments.generated_tables import generate
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
+from deixis.reasoning.grounding.evidence import evidence as evidence_module
 from deixis.reasoning.grounding.evidence.evidence import Evidence, absence, no_unary_evidence
+from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 MakeGraph = Callable[..., RelationGraph]
@@ -103,3 +107,18 @@ def test_pair_without_a_unique_exact_relation_is_an_error(
 def test_absence_never_beats_a_match_with_room_for_all(objects: int, things: int) -> None:
     worth = absence(objects, things)
     assert worth < -2.9 if objects <= things else worth > absence(things, things)
+
+
+def test_places_of_absent_objects_need_no_second_comparison(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evidence_module, "MAX_KEPT_THINGS", 3)
+    built = []
+    original = FactEvidence.of
+
+    def of(*arguments: Any, **options: Any) -> FactEvidence:
+        built.append(arguments)
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(FactEvidence, "of", of)
+    table = generate(6, 2.0, seed=1)
+    problem = no_unary_evidence(table.description(), table.scene()).problem
+    assert problem.places is not None and len(built) == 1

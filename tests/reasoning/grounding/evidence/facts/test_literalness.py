@@ -10,9 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.grounding.evidence.facts import facts
 from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence, fact_tables
 from deixis.reasoning.grounding.evidence.facts.literalness import (
     LITERAL,
@@ -97,3 +99,11 @@ def test_no_evidence_is_above_the_most_at_any_share(seed: int, share: float) -> 
     said = FactEvidence.of(table.description(), table.boxes)
     assert (said.most().tables >= said.tables(share).tables - 1e-5).all()
     assert 0 <= said.literal() <= LITERAL
+
+
+def test_without_time_for_the_tables_the_share_is_the_prior(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = generate(8, 4.0, 0.0, seed=1)
+    said = FactEvidence.of(drawn.description(), drawn.boxes, deadline=Deadline.after(60.0))
+    assert said.literal() > 0.5
+    monkeypatch.setattr(facts, "JUDGEMENT_SECONDS_PER_CELL", 1.0)
+    assert said.literal() == LITERAL * LITERAL_PRIOR

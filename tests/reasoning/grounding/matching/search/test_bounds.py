@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from matching_problems import every_map, problems
 from scipy.optimize import linear_sum_assignment
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.problem import Problem, compile_problem
-from deixis.reasoning.grounding.matching.search.assignment import solve_assignment
+from deixis.reasoning.grounding.matching.search.assignment import assign_until, solve_assignment
 from deixis.reasoning.grounding.matching.search.branch_and_bound import new_stack, node_at, tighten
 
 
@@ -33,6 +34,20 @@ def test_assignment_equals_scipy_with_prices_as_proof(rows: int, columns: int, s
     assert (price >= 0).all()
     assert price.sum() + profit.sum() == pytest.approx(value, abs=1e-9)
     assert (profit[:, None] >= gain - np.append(price, 0.0) - 1e-9).all()
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(1, 6), st.integers(1, 6), st.integers(0, 2**32 - 1))
+def test_assignment_with_time_has_the_best_value(rows: int, columns: int, seed: int) -> None:
+    gain = np.random.default_rng(seed).normal(0, 3, (rows, columns + 1))
+    value = solve_assignment(gain, np.zeros(rows, np.int64), np.empty(columns), np.empty(rows))
+    column_of = assign_until(gain, Deadline.never())
+    assert gain[np.arange(rows), column_of].sum() == pytest.approx(value, abs=1e-9)
+
+
+def test_past_the_deadline_no_two_rows_share_a_column() -> None:
+    gain = np.array([[3.0, 1.0, 0.0], [3.0, 2.0, 0.0], [1.0, 4.0, 0.0]])
+    assert assign_until(gain, Deadline.after(-1.0)).tolist() == [0, 2, 1]  # the second row stays unassigned
 
 
 def test_row_without_any_option_has_no_assignment() -> None:

@@ -10,6 +10,7 @@ from matching_problems import problems
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.matching.search import coarse_to_fine as module
@@ -71,9 +72,27 @@ def test_refining_keeps_beliefs_that_are_a_fixed_point() -> None:
     np.testing.assert_allclose(found, exact, atol=0.01)
 
 
-def test_past_the_deadline_each_level_has_a_round() -> None:
-    found, _ = CoarseToFine(table(60).compiled, None).beliefs(Deadline.after(-1.0))
-    np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1e-5)
+def test_past_the_deadline_beliefs_are_those_without_facts() -> None:
+    problem = chain(5, 40).compiled
+    found, _ = CoarseToFine(problem, None).beliefs(Deadline.after(-1.0))
+    alone = np.where(problem.allowed, np.exp(problem.unary), 0.0)
+    np.testing.assert_allclose(found, alone / alone.sum(axis=1, keepdims=True), atol=1e-5)
+
+
+def test_beliefs_that_are_cut_short_are_those_of_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = table(100).compiled
+    monkeypatch.setattr(module, "FIRST_CELLS", 4)
+    levels = iter([None] * 3)  # the tables, then one level
+
+    def require_time(deadline: Deadline) -> None:
+        if next(levels, deadline) is deadline:
+            raise OutOfTimeError("late")
+
+    fine, _ = CoarseToFine(problem, None).beliefs()
+    monkeypatch.setattr(module, "_require_time", require_time)
+    coarse, _ = CoarseToFine(problem, None).beliefs()
+    np.testing.assert_allclose(coarse.sum(axis=1), 1.0, atol=1e-5)
+    assert (coarse > 0).all() and coarse.max() < fine.max()
 
 
 def test_the_same_seed_gives_the_same_beliefs() -> None:
