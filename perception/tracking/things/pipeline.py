@@ -457,8 +457,8 @@ class Pipeline:
         While a thing moves, a place that shows more of its points is better than one that hides them, and the points
         of one part of a thing of one colour agree as well with another part. A pose therefore slides away from a hand,
         or from the border of the image, that hides an edge; and a mug turns away from its handle while the hand hides
-        it. At rest, only the points that nothing hides count, all that shows the thing must be within its box, and its
-        handle is where it is seen. The thing moves along the table and turns about the vertical; it lies as it did first.
+        it. At rest, only the points that nothing hides count, all that shows the thing must be within its box, its
+        handle is where it is seen, and it lies as it did first. It moves along the table and turns about the vertical.
 
         Parameters
         ----------
