@@ -43,6 +43,13 @@ MIN_TURNED, HANDLE_SEEN = np.deg2rad(20.0), 0.5
 share of the points of the handle that agree, and that nothing hides, above which it is seen where it is supposed to be.
 """
 
+MIN_TILT, MAX_TILT, MAX_WORSE = np.deg2rad(2.0), np.deg2rad(25.0), 0.1
+"""Range of the angles in radians by which a thing at rest may seem to be tilted, although it lies as before, and by how
+much less it may agree with the frame then."""
+
+ON_TABLE = 0.008
+"""Largest distance in metres of the lower side of a thing from the table at which it lies on it."""
+
 FAR_SCORE = 0.06
 """Penalty of a place that is ``jump`` or farther from the predicted one. Without it, a place where something may hide
 all points can have a better score than the place where some are seen.
@@ -450,8 +457,8 @@ class Pipeline:
         While a thing moves, a place that shows more of its points is better than one that hides them, and the points
         of one part of a thing of one colour agree as well with another part. A pose therefore slides away from a hand,
         or from the border of the image, that hides an edge; and a mug turns away from its handle while the hand hides
-        it. At rest, only the points that nothing hides count, all that shows the thing must be within its box, and its
-        handle is where it is seen. The thing moves along the table and turns about the vertical.
+        it. At rest, only the points that nothing hides count, all that shows the thing must be within its box, its
+        handle is where it is seen, and it lies as it did first. It moves along the table and turns about the vertical.
 
         Parameters
         ----------
@@ -465,6 +472,7 @@ class Pipeline:
             Standard deviation of depths at one metre.
         """
         sight = Sight(self._points, self._colours, image, view, taken, noise)
+        self._lay_flat(sight, own)
         if sight.agreement(self.pose[:3, 3], quaternion(self.pose)).exposed >= MIN_ALIGNED:
             pose, gain = sight.shifted(self.pose, self.oriented, self._few(own))
             if gain > MIN_BETTER:
@@ -473,6 +481,23 @@ class Pipeline:
         if self.pose is not self._rest:
             self._rest = self.pose
             self._filter.reset(self.pose)
+
+    def _lay_flat(self, sight: Sight, own: NDArray[np.float64]) -> None:
+        """Let the thing lie as it did when it was first seen, if it is tilted a little and agrees as well without that.
+
+        The particle filter tilts a thing of which a hand or another thing hides a part.
+        """
+        turn = self.pose[:3, :3]
+        if not MIN_TILT < np.arccos(np.clip(turn[2, 2], -1.0, 1.0)) < MAX_TILT:
+            return
+        flat = self.pose.copy()
+        flat[:3, :3] = turned_axes(float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))).T
+        if abs(flat[2, 3] - self.half[2]) < ON_TABLE:
+            flat[2, 3] = self.half[2]
+        flat, _ = sight.shifted(flat, self.oriented, self._few(own))
+        tilted, laid = (sight.agreement(pose[:3, 3], quaternion(pose)) for pose in (self.pose, flat))
+        if laid.fit > tilted.fit - MAX_WORSE and laid.visible > tilted.visible - MAX_WORSE:
+            self.pose = flat
 
     def _turn_to_handle(
         self,

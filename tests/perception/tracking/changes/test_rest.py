@@ -1,9 +1,12 @@
 """Things at rest: those that left their places, alone or with most others."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from first_looks import HALF, MUG, PLATE, FirstLook, first_look
 
-from deixis.perception.tracking.changes.rest import has_left, is_laid_anew, look_at_resting
+from deixis.perception.tracking.changes.rest import has_left, is_laid_anew, is_lifted, look_at_resting
 from deixis.perception.tracking.kernels import FARTHER, SAME
 from deixis.perception.tracking.table.observation import Observation
 from deixis.perception.tracking.table.reference import UNKNOWN_OWNER
@@ -36,3 +39,19 @@ def test_table_is_laid_anew_if_most_things_left_at_once(count: int, is_anew: boo
     look = first_look([PLATE, MUG])
     changes = seen_without(look, *range(1, count + 1)).changes
     assert is_laid_anew(look.things.resting, changes, HALF.moved) == is_anew
+
+
+@pytest.mark.parametrize(
+    ("hand_at", "is_foot", "lifted"), [(0.1, True, True), (-5.0, True, False), (0.1, False, False)]
+)
+def test_mug_is_lifted_if_its_foot_is_gone_by_hand(hand_at: float, is_foot: bool, lifted: bool) -> None:
+    look = first_look([PLATE, MUG])
+    plate, mug = look.things
+    seen = replace(look.seen(0.1), hand_at=hand_at)
+    own = np.flatnonzero(look.table.reference.owner == mug.slot)
+    low = look.table.reference.points(own, seen.view)[:, 2] < 0.02
+    left = own[low if is_foot else ~low]
+    seen.changes.state.ravel()[left] = FARTHER
+    seen.changes.counts[mug.slot, FARTHER] += len(left)
+    assert is_lifted(mug, look.table.reference, seen) == lifted
+    assert not is_lifted(plate, look.table.reference, seen)

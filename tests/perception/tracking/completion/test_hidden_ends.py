@@ -54,6 +54,11 @@ def test_end_lies_behind_what_hides_it() -> None:
     assert after == pytest.approx(0.08, abs=0.006), "16 pixels are hidden"
 
 
+def test_pixel_of_the_table_before_a_hidden_end_may_be_noise() -> None:
+    knife = box_of(*KNIFE, 1, 0.01)
+    assert hidden_lengths(knife, [], table_with(slice(51, 67)), VIEW)[1] > 0.07
+
+
 @pytest.mark.parametrize("first", [52, 56])
 def test_end_is_seen_where_the_table_is(first: int) -> None:
     knife = box_of(*KNIFE, 1, 0.01)

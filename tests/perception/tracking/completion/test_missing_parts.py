@@ -75,6 +75,22 @@ def test_pieces_of_one_thing_are_found(is_hidden: bool) -> None:
     assert flat(tines, on).pieces([handle]) == [], "the larger piece is the thing"
 
 
+@pytest.mark.parametrize(
+    ("colour", "has_glass", "is_one"), [(BLUE, True, True), (STEEL, True, False), (BLUE, False, False)]
+)
+def test_napkin_goes_on_at_the_other_side_of_a_glass(
+    colour: tuple[int, int, int], has_glass: bool, is_one: bool
+) -> None:
+    on, seen, corner = table(), np.s_[10:20, 40:70], np.s_[30:40, 40:48]
+    lay(on, seen, BLUE, 1)
+    lay(on, corner, colour, 2)
+    for hidden in (np.s_[20:46, 48:80], np.s_[20:30, 36:48]):
+        if has_glass:
+            lay(on, hidden, WHITE, 3, 0.15)
+    napkin, piece = thing_at(seen, 1, BLUE), thing_at(corner, 2, colour)
+    assert flat(napkin, on).pieces([piece]) == ([piece] if is_one else [])
+
+
 def test_end_that_came_into_view_later_is_a_piece() -> None:
     on = table()
     lay(on, np.s_[29:32, 40:45], STEEL, 1)  # most of it is hidden by now

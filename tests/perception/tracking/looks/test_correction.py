@@ -8,8 +8,12 @@ from first_looks import HALF, MUG, PLATE, cut_rim, first_look
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import BACKGROUND, Detection, detect
+from deixis.perception.detection.outline import oriented_box, upright_box
+from deixis.perception.detection.table.viewpoint import moved
+from deixis.perception.simulator.films.film import FilmedFrame
 from deixis.perception.simulator.films.stage import Rest, film
-from deixis.perception.tracking.looks.correction import reconciled, remodelled
+from deixis.perception.simulator.laying import Placement
+from deixis.perception.tracking.looks.correction import correct, reconciled, remodelled
 from deixis.perception.tracking.things.model import model_on_table
 
 pytest.importorskip("open3d")
@@ -60,3 +64,25 @@ def test_new_model_keeps_what_is_hidden_now() -> None:
     made = remodelled(plate, part, look.things, image, look.view, 0.5, HALF)
     assert made is next(iter(look.things)) and made.rest == plate.rest and made.at == plate.at
     assert made.oriented.extents[0] > 0.9 * plate.oriented.extents[0]
+
+
+def test_thing_that_was_cut_keeps_the_name_of_its_middle() -> None:
+    def cut_knife(frame: FilmedFrame) -> Detection:
+        """Return a detection in which the first half of a knife is a thing, and its middle another one."""
+        found = detect(frame.cloud)
+        own = np.flatnonzero(found.labels == 0)
+        points = moved(frame.cloud.points[own].astype(np.float64), found.frame)
+        along = (points - found.oriented[0].centre) @ found.oriented[0].axes[0] / found.oriented[0].extents[0] + 0.5
+        labels = found.labels.copy()
+        labels[own] = np.select([along < 0.45, along < 0.8], [0, 1], BACKGROUND)
+        pieces = [points[labels[own] == k] for k in (0, 1)]
+        boxes = np.array([upright_box(piece, HALF.detection.outlines) for piece in pieces])
+        oriented = tuple(oriented_box(piece, HALF.detection.outlines) for piece in pieces)
+        return replace(found, labels=labels, boxes=boxes, oriented=oriented)
+
+    look = first_look([Placement("knife", "dinner knife", 0.0, 0.0, 0.4, seed=1)], cut_knife)
+    assert [thing.id for thing in look.things] == ["t1", "t2"]
+    whole = detect(look.cloud)
+    result = correct(look.table, look.things, whole, look.cloud, look.image, look.view, 0.5, 1.0, HALF)
+    assert [thing.id for thing in look.things] == ["t2"] == list(result.ids.values())
+    assert [thing.id for thing in result.merged] == ["t1"]

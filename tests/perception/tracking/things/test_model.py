@@ -7,7 +7,9 @@ import pytest
 from first_looks import HALF, first_look
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox
+from deixis.perception.detection.outline import oriented_box, upright_box
+from deixis.perception.detection.table.viewpoint import moved
+from deixis.perception.scene import OrientedBox, turned_axes
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.things.model import Model, extended, model_of, standing, without_table
 
@@ -71,3 +73,38 @@ def test_boxes_of_cutlery_hold_no_points_of_the_table() -> None:
     points = model.cloud.points + model.pose[:3, 3]
     assert 2 * model.half == pytest.approx(np.ptp(points, axis=0), abs=0.002)
     assert model.oriented.extents[0] < box.extents[0] - 0.02
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.9])
+def test_hidden_corner_of_a_napkin_is_within_its_box(yaw: float) -> None:
+    turn, pose = turned_axes(0.6).T, np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turned_axes(yaw).T, (0.3, 0.2, 0.005)
+    whole = np.random.default_rng(6).uniform((-0.1, -0.08, -0.005), (0.1, 0.08, 0.005), (8000, 3))
+    seen = whole[whole[:, 0] + whole[:, 1] < 0.1] @ turn.T
+    first, later = seen[:4000], seen[4000:] @ pose[:3, :3].T + pose[:3, 3]
+    cloud = PointCloud(first.astype(np.float32), np.full((len(first), 3), 120, np.uint8))
+    napkin = Model(cloud, np.array([0.1, 0.1, 0.005]), OrientedBox((0.0, 0.0, 0.0), 0.6, (0.2, 0.16, 0.01)), pose)
+    model = extended(napkin, later, np.full((len(later), 3), 120, np.float32), HALF.detection.outlines)
+    assert model.pose[:2, 3] == pytest.approx(pose[:2, 3], abs=0.002)
+    assert model.half[:2] == pytest.approx(np.abs(whole[:, :2] @ turn[:2, :2].T).max(axis=0), abs=0.004)
+
+
+def test_first_model_of_a_napkin_has_its_hidden_corner() -> None:
+    look = first_look([Placement("napkin", "napkin", 0.0, 0.0, 0.6, seed=2)])
+    own = np.flatnonzero(look.found.labels == 0)
+    points = moved(look.cloud.points[own].astype(np.float64), look.found.frame)
+    along = (
+        (points - look.found.oriented[0].centre)
+        @ look.found.oriented[0].axes[:2].T
+        / look.found.oriented[0].extents[:2]
+    )
+    seen = along.sum(axis=1) < 0.5
+    outlines = HALF.detection.outlines
+    found = replace(
+        look.found,
+        boxes=upright_box(points[seen], outlines)[None],
+        oriented=(oriented_box(points[seen], outlines),),
+    )
+    model = model_of(found, look.cloud, own[seen], 0, np.eye(4), outlines)
+    assert model.pose[:2, 3] == pytest.approx(look.found.boxes[0].mean(axis=0)[:2], abs=0.004)
+    assert np.abs(found.boxes[0].mean(axis=0) - model.pose[:3, 3]).max() > 0.008, "the corner counts"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox
+from deixis.perception.scene import OrientedBox, turned_axes
 from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.things.pipeline import Pipeline
@@ -49,6 +49,56 @@ def test_pose_at_rest_is_that_of_all_pixels_of_the_thing() -> None:
     napkin.align(image, table_view(OPTICS, BACK, SHAPE), depth == 1.0, seen, 0.0015)
     assert napkin.pose[:2, 3] == pytest.approx(middle[:2], abs=0.004)
     assert napkin.last_rest is napkin.pose
+
+
+def mug_and_image(handle: float) -> tuple[Pipeline, FrameImage, np.ndarray]:
+    """Return a mug with a handle along x, a frame in which it has another direction, and the points of the frame."""
+    rng = np.random.default_rng(2)
+    angle, z = rng.uniform(0, 2 * np.pi, 6000), rng.uniform(0.0, 0.1, 6000)
+    body = np.column_stack([0.04 * np.cos(angle), 0.04 * np.sin(angle), z])
+    ear = rng.uniform((0.04, -0.006, 0.02), (0.075, 0.006, 0.09), (600, 3))
+    both = np.concatenate([body, ear])
+    pose = np.eye(4)
+    pose[:3, 3] = 0.0175, 0.0, 0.05
+    cloud = PointCloud((both - pose[:3, 3]).astype(np.float32), np.tile(np.array(RED, np.uint8), (len(both), 1)))
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.115, 0.08, 0.1))
+    mug = Pipeline("t1", 1, cloud, np.array([0.0575, 0.04, 0.05]), box, pose, 0.0, TrackingSettings())
+    seen = np.concatenate([body, ear @ turned_axes(handle)]) + np.array([0.004, -0.003, 0.0])
+    optics = Optics(np.array([[500.0, 0, 79.5], [0, 500.0, 59.5], [0, 0, 1]]), np.zeros(3))
+    depth, colour = np.ones(SHAPE, np.float32), np.broadcast_to(WOOD, (*SHAPE, 3)).astype(np.float32)
+    view = table_view(optics, BACK, SHAPE)
+    order = np.argsort(seen[:, 2])
+    pixels, away = view.pixels(seen[order])
+    depth.ravel()[pixels], colour.reshape(-1, 3)[pixels] = away, RED
+    rows, columns = np.indices(SHAPE)
+    rays = np.stack([(columns - 79.5) / 500, (rows - 59.5) / 500, np.ones(SHAPE)], axis=-1)
+    return mug, FrameImage((rays * depth[..., None]).astype(np.float32), depth, colour, optics), seen
+
+
+@pytest.mark.parametrize("handle", [1.2, -2.5])
+def test_mug_at_rest_is_turned_to_its_handle(handle: float) -> None:
+    mug, image, seen = mug_and_image(handle)
+    mug.align(image, table_view(image.optics, BACK, SHAPE), np.zeros(SHAPE, np.bool_), seen, 0.0015)
+    middle = np.array([0.0175, 0.0]) @ turned_axes(handle)[:2, :2] + (0.004, -0.003)
+    assert mug.pose[:2, 3] == pytest.approx(middle, abs=0.008)
+    assert np.arctan2(mug.pose[1, 0], mug.pose[0, 0]) == pytest.approx(handle, abs=0.3)
+
+
+@pytest.mark.parametrize(("degrees", "is_flat"), [(8.0, True), (60.0, False)])
+def test_thing_that_seems_tilted_at_rest_lies_flat(degrees: float, is_flat: bool) -> None:
+    napkin = flat_thing()
+    depth, colour = np.ones(SHAPE, np.float32), np.broadcast_to(WOOD, (*SHAPE, 3)).astype(np.float32)
+    view = table_view(OPTICS, BACK, SHAPE)
+    pixels, away = view.pixels(napkin.placed_points)
+    depth.ravel()[pixels], colour.reshape(-1, 3)[pixels] = away, RED
+    rows, columns = np.indices(SHAPE)
+    rays = np.stack([(columns - 79.5) / 200, (rows - 59.5) / 200, np.ones(SHAPE)], axis=-1)
+    image = FrameImage((rays * depth[..., None]).astype(np.float32), depth, colour, OPTICS)
+    tilted, angle = napkin.pose.copy(), np.deg2rad(degrees)
+    tilted[1:3, 1:3] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    napkin.pose = tilted
+    napkin.align(image, view, np.zeros(SHAPE, np.bool_), image.places(pixels, BACK), 0.0015)
+    assert (napkin.pose[2, 2] == pytest.approx(1.0)) == is_flat
 
 
 def test_unlikeness_grows_with_the_distance_and_with_the_hue() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from deixis.perception.tracking.things.revolution import circle_around
+from deixis.perception.tracking.things.revolution import circle_around, revolution_around
 
 
 def front(radius: float, *, height: float = 0.2) -> np.ndarray:
@@ -42,3 +42,22 @@ def test_circle_of_a_narrow_arc_is_within_the_true_one() -> None:
     points = points[np.abs(points[:, 0] - 0.1) < 0.01]
     circle = circle_around(points)
     assert circle is None or circle.centre[1] + circle.radius < 0.24, "within the true back"
+
+
+@pytest.mark.parametrize("direction", [0.7, -2.0])
+def test_direction_of_a_handle_is_found_about_the_axis(direction: float) -> None:
+    mug, rng = front(0.04, height=0.1), np.random.default_rng(5)
+    away, across, z = rng.uniform((0.042, -0.004, 0.03), (0.07, 0.004, 0.08), (120, 3)).T
+    cosine, sine = np.cos(direction), np.sin(direction)
+    handle = np.column_stack([0.1 + cosine * away - sine * across, 0.2 + sine * away + cosine * across, z])
+    found = revolution_around(np.concatenate([mug, handle]))
+    assert found is not None and found.handle(mug) is None
+    assert found.handle(np.concatenate([mug, handle])) == pytest.approx(direction, abs=0.1)
+    assert found.is_handle(handle).mean() > 0.8 and not found.is_handle(mug).any()
+
+
+def test_surface_is_found_again_beside_its_place() -> None:
+    found = revolution_around(front(0.04))
+    assert found is not None
+    moved = found.moved_to(front(0.04) + np.array([0.012, -0.009, 0.0]))
+    assert moved.centre - found.centre == pytest.approx((0.012, -0.009), abs=0.003)
