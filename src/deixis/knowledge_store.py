@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from deixis.learning.lessons.recollection import Recollection
     from deixis.learning.models.words import LearnedWords
     from deixis.memory.journal import Commit, JointWrite
+    from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.memory.semantic.rdf.links import Link
@@ -267,7 +268,11 @@ class KnowledgeStore(Closing):
         return replace(self.meaning(), sizes=before)
 
     def unlearning(
-        self, lessons: Sequence[str], links: Mapping[str, Sequence[Link]], revised: Sequence[Lesson] = ()
+        self,
+        lessons: Sequence[str],
+        links: Mapping[str, Sequence[Link]],
+        revised: Sequence[Lesson] = (),
+        progress: Progress | None = None,
     ) -> Commit:
         """Return a function that removes lessons, with what follows from them only, and changes the links of views.
 
@@ -279,6 +284,8 @@ class KnowledgeStore(Closing):
             All links of each view that changes, by the id of the view.
         revised
             Lessons that replace those with their ids.
+        progress
+            Called with the number of lessons that are done, and of all.
 
         Returns
         -------
@@ -292,7 +299,7 @@ class KnowledgeStore(Closing):
         """
         from deixis.learning.update import unlearning
 
-        return self._forgetting_meaning(unlearning(self.memory(), self.ontology, lessons, links, revised))
+        return self._forgetting_meaning(unlearning(self.memory(), self.ontology, lessons, links, revised, progress))
 
     def import_(self, file: str | Path) -> None:
         """Import the export of another memory, or plain triples; keep what the memory has.
