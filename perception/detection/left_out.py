@@ -120,7 +120,9 @@ def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSet
     discarded, total = (int(above.counts[which].sum()) for which in (small, above.mask & ~aside & ~high))
     many = discarded >= settings.least_points and discarded > settings.notes.min_discarded_share * total
     if many or above.groups(small, settings)[0]:
-        notes.append(f"{discarded} of the {total} points above the table are in pieces too small or too low for objects")
+        notes.append(
+            f"{discarded} of the {total} points above the table are in pieces too small or too low for objects"
+        )
     if _reaches_over(top.outside, pieces, settings.notes):
         notes.append("something reaches over the edge of the table: a hand, an arm, or an object that hangs over it")
     return tuple(notes)
