@@ -44,7 +44,7 @@ class KnowledgeStore(Closing):
     def __init__(self, path: Path, ontology: Ontology | None = None) -> None:
         self._given = ontology
         self._memory = OnDemand(path, _open)
-        self._meaning: Meaning | None = None  # words and sizes in force; None after a change
+        self._meaning: Meaning | None = None  # present words and sizes; None after a change
 
     @cached_property
     def ontology(self) -> Ontology:
@@ -105,7 +105,7 @@ class KnowledgeStore(Closing):
         return self._memory.get(create)
 
     def meaning(self) -> Meaning:
-        """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
+        """Return the words and sizes that apply: the learned ones, and the shipped ones for the rest.
 
         Returns
         -------
@@ -173,7 +173,7 @@ class KnowledgeStore(Closing):
         return self._forgetting_meaning(keeping(self.memory(create=True), self.ontology, lessons, seen))
 
     def _forgetting_meaning(self, commit: Commit) -> Commit:
-        """Return a commit after which the words and sizes in force are read again."""
+        """Return a commit after which the present words and sizes are read again."""
 
         def committing(write: JointWrite | None) -> None:
             try:
@@ -220,7 +220,7 @@ class KnowledgeStore(Closing):
         return replace(learned, kept=tuple(lesson.id for lesson in lessons), left_out=(*learned.left_out, *left_out))
 
     def forget_relations(self) -> None:
-        """Remove the learned models of relation words, so that the shipped ones are in force again; keep lessons."""
+        """Remove the learned models of relation words, so that the shipped ones apply again; keep the lessons."""
         from deixis.learning.update import forget_words
 
         forget_words(self.memory())
@@ -249,7 +249,7 @@ class KnowledgeStore(Closing):
         return self._forgetting_meaning(forgetting(self.memory(), self.ontology, lesson))
 
     def meaning_before(self, lesson: str) -> Meaning:
-        """Return the words in force, and the sizes that the lessons before a lesson taught.
+        """Return the present words, and the sizes that the lessons before a lesson taught.
 
         Parameters
         ----------

@@ -537,7 +537,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def meaning(self) -> Meaning:
-        """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
+        """Return the words and sizes that apply: the learned ones, and the shipped ones for the rest.
 
         Returns
         -------
@@ -603,7 +603,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def forget_relations(self) -> None:
-        """Remove the learned models of relation words, so that the shipped ones are in force again; keep lessons."""
+        """Remove the learned models of relation words, so that the shipped ones apply again; keep the lessons."""
         self.knowledge_store.forget_relations()
 
     @_one_at_a_time

@@ -80,7 +80,7 @@ class _Clause:
     shared: bool
 
     def key(self) -> Hashable:
-        """Return what clauses have in common that are said of several subjects at once."""
+        """Return what clauses about several subjects have in common."""
         content = self.stated.content
         qualified = (self.stated.condition, self.stated.past, self.stated.uncertain, content.optional, content.weight)
         subjects = () if self.shared else (content,)
