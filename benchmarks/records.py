@@ -387,7 +387,7 @@ def page() -> str:
 def _table(recordings: list[Recording], newest: int) -> list[str]:
     """Return the lines of a run: a row for each case and a column for each measure if its figures form a table.
 
-    A figure named ``case: measure`` belongs into such a table.
+    A figure named ``case: measure`` belongs in such a table.
     """
     if not recordings:
         return ["Not recorded yet."]

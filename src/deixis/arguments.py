@@ -66,6 +66,7 @@ def checks_arguments(function: Callable[Given, Result]) -> Callable[Given, Resul
 
     @wraps(function)
     def checked(*args: Given.args, **kwargs: Given.kwargs) -> Result:
+        __tracebackhide__ = True  # pytest shows the caller instead
         first = (taken(name, value) for name, value in zip(names, args, strict=False))
         named = {name: taken(name, value) for name, value in kwargs.items()}
         return call(*first, *args[len(names) :], **named)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from deixis.learning.lessons.recollection import Recollection
     from deixis.learning.models.words import LearnedWords
     from deixis.memory.journal import Commit, JointWrite
+    from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.memory.semantic.rdf.links import Link
@@ -43,7 +44,7 @@ class KnowledgeStore(Closing):
     def __init__(self, path: Path, ontology: Ontology | None = None) -> None:
         self._given = ontology
         self._memory = OnDemand(path, _open)
-        self._meaning: Meaning | None = None  # words and sizes in force; None after a change
+        self._meaning: Meaning | None = None  # present words and sizes; None after a change
 
     @cached_property
     def ontology(self) -> Ontology:
@@ -104,7 +105,7 @@ class KnowledgeStore(Closing):
         return self._memory.get(create)
 
     def meaning(self) -> Meaning:
-        """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
+        """Return the words and sizes that apply: the learned ones, and the shipped ones for the rest.
 
         Returns
         -------
@@ -172,7 +173,7 @@ class KnowledgeStore(Closing):
         return self._forgetting_meaning(keeping(self.memory(create=True), self.ontology, lessons, seen))
 
     def _forgetting_meaning(self, commit: Commit) -> Commit:
-        """Return a commit after which the words and sizes in force are read again."""
+        """Return a commit after which the present words and sizes are read again."""
 
         def committing(write: JointWrite | None) -> None:
             try:
@@ -219,7 +220,7 @@ class KnowledgeStore(Closing):
         return replace(learned, kept=tuple(lesson.id for lesson in lessons), left_out=(*learned.left_out, *left_out))
 
     def forget_relations(self) -> None:
-        """Remove the learned models of relation words, so that the shipped ones are in force again; keep lessons."""
+        """Remove the learned models of relation words, so that the shipped ones apply again; keep the lessons."""
         from deixis.learning.update import forget_words
 
         forget_words(self.memory())
@@ -248,7 +249,7 @@ class KnowledgeStore(Closing):
         return self._forgetting_meaning(forgetting(self.memory(), self.ontology, lesson))
 
     def meaning_before(self, lesson: str) -> Meaning:
-        """Return the words in force, and the sizes that the lessons before a lesson taught.
+        """Return the present words, and the sizes that the lessons before a lesson taught.
 
         Parameters
         ----------
@@ -267,7 +268,11 @@ class KnowledgeStore(Closing):
         return replace(self.meaning(), sizes=before)
 
     def unlearning(
-        self, lessons: Sequence[str], links: Mapping[str, Sequence[Link]], revised: Sequence[Lesson] = ()
+        self,
+        lessons: Sequence[str],
+        links: Mapping[str, Sequence[Link]],
+        revised: Sequence[Lesson] = (),
+        progress: Progress | None = None,
     ) -> Commit:
         """Return a function that removes lessons, with what follows from them only, and changes the links of views.
 
@@ -279,6 +284,8 @@ class KnowledgeStore(Closing):
             All links of each view that changes, by the id of the view.
         revised
             Lessons that replace those with their ids.
+        progress
+            Called with the number of lessons that are done, and of all.
 
         Returns
         -------
@@ -292,7 +299,7 @@ class KnowledgeStore(Closing):
         """
         from deixis.learning.update import unlearning
 
-        return self._forgetting_meaning(unlearning(self.memory(), self.ontology, lessons, links, revised))
+        return self._forgetting_meaning(unlearning(self.memory(), self.ontology, lessons, links, revised, progress))
 
     def import_(self, file: str | Path) -> None:
         """Import the export of another memory, or plain triples; keep what the memory has.

@@ -537,7 +537,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def meaning(self) -> Meaning:
-        """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
+        """Return the words and sizes that apply: the learned ones, and the shipped ones for the rest.
 
         Returns
         -------
@@ -603,7 +603,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def forget_relations(self) -> None:
-        """Remove the learned models of relation words, so that the shipped ones are in force again; keep lessons."""
+        """Remove the learned models of relation words, so that the shipped ones apply again; keep the lessons."""
         self.knowledge_store.forget_relations()
 
     @_one_at_a_time
@@ -638,7 +638,7 @@ class Session(Closing):
         forget_lesson(lesson, self.knowledge_store, self.view_store)
 
     @_one_at_a_time
-    def unlearn(self, selection: Selection, dry_run: bool = False) -> Unlearned:
+    def unlearn(self, selection: Selection, dry_run: bool = False, progress: Progress | None = None) -> Unlearned:
         """Take back what a lesson, a sentence, a label, a table, a teacher or a day taught, in all stores.
 
         Everything that came only from it goes, and nothing else: a view keeps its other teachings, and is forgotten
@@ -650,6 +650,8 @@ class Session(Closing):
             What to take back.
         dry_run
             True to change nothing, and return what would be taken back.
+        progress
+            Called with the number of lessons that are taken back, and of all.
 
         Returns
         -------
@@ -676,7 +678,7 @@ class Session(Closing):
         """
         from deixis.workflows.knowledge.unlearn import unlearn
 
-        return unlearn(selection, self.knowledge_store, self.view_store, dry_run)
+        return unlearn(selection, self.knowledge_store, self.view_store, dry_run, progress)
 
     @_one_at_a_time
     def recall(self, question: str, at: datetime | None = None, speaker: str | None = None) -> Recall:

@@ -365,7 +365,7 @@ class Mentions(Drafting, ABC):
 
 
 def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predicate) -> bool:
-    """Return True for *next to the screen* after *on the desk*, which is said of what is on the desk.
+    """Return True for *next to the screen* after *on the desk*, which is about what is on the desk.
 
     What stands on the floor, or is a part of the room, is beside the desk itself: *on the desk next to the door*.
     """

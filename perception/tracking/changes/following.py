@@ -315,7 +315,7 @@ def _seen_where_it_rested(
 def _is_set_down_with(
     load: Pipeline, carrier: Pipeline, things: Things, table: Table, seen: Observation, same: NDArray[np.bool_]
 ) -> bool:
-    """Let a thing that was not found rest on what carried it and was set down, if the frame does not deny it."""
+    """Let a thing that was not found rest on what carried it and was set down, if the frame does not contradict it."""
     if not load.active or load.found or load.carrier is not carrier or not load.is_carried_off(MIN_WAY):
         return False
     load.ride()

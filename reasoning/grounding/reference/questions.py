@@ -88,7 +88,7 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True, enoug
 
 
 def fewest_questions(shares: Array, enough: float = DECIDED) -> float:
-    """Return about the least expected number of yes-or-no questions until an object is probable enough.
+    """Return the approximate minimum of the expected number of yes-or-no questions until an object is probable enough.
 
     It is the mean length of a Huffman code (1952) for the objects, without the least probable ones that together have
     less than the share ``1 - enough``: for these, no question needs to be asked.

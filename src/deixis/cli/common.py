@@ -43,7 +43,7 @@ MemoryDir = Annotated[
     typer.Option("--memory", metavar="DIR", help="Folder of the memory (default: $DEIXIS_MEMORY, else in your home)."),
 ]
 NoMemory = Annotated[bool, typer.Option("--no-memory", help="Do not use the memory.")]
-Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw it (.png, .svg, .pdf).")]
+Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw the answer (.png, .svg, .pdf).")]
 
 PerceivedScene = Annotated[str, typer.Argument(metavar="SCENE", help="A scene that perceive wrote, with clouds.")]
 

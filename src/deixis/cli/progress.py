@@ -63,13 +63,15 @@ class _LateBar:
         from rich.text import Text
 
         class Count(MofNCompleteColumn):
-            """Number of steps that are done; nothing for work whose steps are not counted."""
+            """Number of steps that are done, of their total if that is known; nothing before the first step."""
 
             def render(self, task: Task) -> Text:
-                return Text() if task.total is None else super().render(task)
+                if task.total is None:
+                    return Text(str(int(task.completed)) if task.completed else "", style="progress.download")
+                return super().render(task)
 
         class TimeLeft(TimeRemainingColumn):
-            """Estimated time until the last step is done; nothing for work whose steps are not counted."""
+            """Estimated time until the last step is done; nothing where their number is not known."""
 
             def render(self, task: Task) -> Text:
                 return Text() if task.total is None else Text("left: ") + super().render(task)

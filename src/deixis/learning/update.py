@@ -25,6 +25,7 @@ from deixis.learning.models.word_statistics import replacing, stored_words
 from deixis.learning.models.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
 from deixis.memory.journal import Commit, JointWrite
+from deixis.memory.perceptual.protocol import Progress
 from deixis.memory.perceptual.records import View
 from deixis.memory.semantic.exchange import import_dump, merging_dump
 from deixis.memory.semantic.opening import open_memory
@@ -213,6 +214,7 @@ def unlearning(
     lessons: Sequence[str],
     links: Mapping[str, Sequence[Link]],
     revised: Sequence[Lesson] = (),
+    progress: Progress | None = None,
 ) -> Commit:
     """Return a function that removes lessons, with what follows from them only, and changes the links of views.
 
@@ -228,6 +230,8 @@ def unlearning(
         All links of each view that changes, by the id of the view.
     revised
         Lessons that replace those with their ids, in their places.
+    progress
+        Called with the number of lessons that are done, and of all.
 
     Returns
     -------
@@ -245,10 +249,16 @@ def unlearning(
         rules = parts[0][1] if parts else memory.kept_up()
         return lambda joint: memory.commit(change, rules, joint)
 
+    total = len(lessons) + len(revised)
+
     def write(copy: SemanticMemory, joint: JointWrite | None) -> None:
-        for lesson in lessons:
+        for number, lesson in enumerate(lessons):
+            if progress is not None:
+                progress(number, total)
             copy.commit(*_departed(copy, ontology, lesson), joint)
-        for new in revised:
+        for number, new in enumerate(revised, len(lessons)):
+            if progress is not None:
+                progress(number, total)
             _replace(copy, ontology, new)
         copy.commit(replacing_links(copy.store, links), copy.kept_up(), joint)
 

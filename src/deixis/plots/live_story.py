@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from deixis.memory.perceptual.protocol import Progress
     from deixis.robot.live.moments import Moment
     from deixis.robot.live.run import LiveRobot
 
@@ -37,7 +38,7 @@ MAX_LINES, MAX_SAID = 7, 3
 """Number of lines below a picture, and of each that speaks; the page has all words."""
 
 
-def write_story(robot: LiveRobot, folder: str | Path) -> Path:
+def write_story(robot: LiveRobot, folder: str | Path, progress: Progress | None = None) -> Path:
     """Write the story of a run: pictures of its key moments, one picture of three of them, and a page.
 
     Parameters
@@ -46,6 +47,8 @@ def write_story(robot: LiveRobot, folder: str | Path) -> Path:
         The robot at the end of its story.
     folder
         The folder, which is made if it does not exist.
+    progress
+        Called with the number of pictures that are drawn, and of all.
 
     Returns
     -------
@@ -63,6 +66,8 @@ def write_story(robot: LiveRobot, folder: str | Path) -> Path:
     require_picture(place / OVERVIEW)
     moments = key_moments(robot.board, robot.began)
     for number, moment in enumerate(moments, 1):
+        if progress is not None:
+            progress(number - 1, len(moments) + 1)
         write_moments([moment], place / _file(number))
     if moments:
         write_moments(telling(moments), place / OVERVIEW)

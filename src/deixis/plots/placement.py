@@ -13,7 +13,7 @@ What a reader needs decides:
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -195,11 +195,7 @@ def name_places(
     boxes = [Box(*outline) for outline in outlines.tolist()]
     for index in sorted(range(len(boxes)), key=lambda index: boxes[index].area):
         surroundings = _Surroundings(boxes[index], np.delete(outlines, index, axis=0), list(found.values()), squares)
-        candidates = [
-            candidate
-            for candidate in _candidates(boxes[index], *sizes[index], most)
-            if candidate.box.shared(np.array([frame]))[0] >= 0.999 * candidate.box.area
-        ]
+        candidates = surroundings.free(list(_candidates(boxes[index], *sizes[index], most)), frame)
         place = surroundings.cheapest(candidates, most)
         if place is None:
             surroundings.is_carried = False  # a name without its line is better than none
@@ -249,15 +245,23 @@ class _Surroundings:
         self._names = np.array([place.box for place in placed]).reshape(-1, 4)
         self._leaders = [place.leader for place in placed if place.leader is not None]
 
-    def cheapest(self, candidates: Iterable[_Candidate], most: float) -> NamePlace | None:
-        """Return the cheapest possible place that costs less than ``most``, if there is one."""
+    def free(self, candidates: Sequence[_Candidate], frame: Box) -> list[_Candidate]:
+        """Return the places within the frame that cover no name and no line, the cheapest first."""
+        boxes = np.array([candidate.box for candidate in candidates]).reshape(-1, 4)
+        areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
+        is_free = _shared(boxes, np.array([frame]))[:, 0] >= 0.999 * areas
+        is_free &= ~_shared(boxes, self._names).any(axis=1)
+        for leader in self._leaders:
+            is_free &= ~crosses(leader, boxes)
+        return sorted((candidates[k] for k in np.flatnonzero(is_free).tolist()), key=lambda candidate: candidate.cost)
+
+    def cheapest(self, candidates: Sequence[_Candidate], most: float) -> NamePlace | None:
+        """Return the cheapest of some places, in order of cost, that costs less than ``most``, if there is one."""
         best, least = None, most
-        for candidate in sorted(candidates, key=lambda candidate: candidate.cost):
+        for candidate in candidates:
             if candidate.cost >= least:
                 break
             box = candidate.box
-            if box.shared(self._names).any() or any(crosses(line, np.array([box]))[0] for line in self._leaders):
-                continue
             on_carrier = box.shared(self._carriers) >= 0.999 * box.area
             leader = None if candidate.inside else _leader(box, self._own, is_needed=self.is_carried)
             total = candidate.cost + self._cost(candidate, on_carrier, leader)

@@ -218,7 +218,7 @@ class Robot(Closing):
         self.session.knowledge_store.require_usable()
 
     def _time(self, at: float | None) -> float:
-        """Return a time in seconds, the present for None; raise an error unless it is finite and the robot open."""
+        """Return a time in seconds, the present for None; raise an error if it is not finite or the robot is closed."""
         self._require_open()
         if at is not None and not math.isfinite(at):
             raise RobotError(f"`at` must be a finite number of seconds, got {at}")

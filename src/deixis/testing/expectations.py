@@ -1,7 +1,7 @@
 """Expectation blocks: comments at the end of a ``.layout`` file that say what must be true of it.
 
 A block starts with the comment ``# expect:``; the rest of its line, and each comment line after it, is one
-expectation::
+expectation. The word may be repeated on each line::
 
     # expect:
     #   consistent
@@ -75,7 +75,7 @@ def expectations_in(text: str, file: str) -> Iterator[Expectation]:
             raise ExpectationError(
                 f"{file}:{line}:1: an expectation block is comments up to the end, got '{comment:.40}'"
             )
-        comment = comment.lstrip("#").strip()
+        comment = comment.lstrip("#").strip().removeprefix("expect:").strip()
         if comment and _check(comment) is None:
             known = ", ".join(CHECKS)
             raise ExpectationError(f"{file}:{line}:1: '{comment:.60}' is not an expectation; one starts with {known}")
@@ -159,7 +159,7 @@ def _matches(rest: str, place: str) -> tuple[str, dict[str, str | None]]:
             raise ExpectationError(f"{place}: '{pair}' must be 'name = id' or 'name = absent'")
         expected[name] = None if thing == "absent" else thing
     if not expected:
-        raise ExpectationError(f"{place}: name what is expected, as in '{scene.strip() or 'SCENE'}: fork = o3'")
+        raise ExpectationError(f"{place}: after the scene, write a colon and what is expected: 'SCENE: fork = o3'")
     return scene.strip(), expected
 
 

@@ -89,6 +89,23 @@ class LayoutFile(pytest.File):
             item.expectation = expectation
             yield item
 
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException]) -> Any:
+        """Return the message of a malformed expectation without a traceback through Deixis.
+
+        Parameters
+        ----------
+        excinfo
+            The exception of the collection.
+
+        Returns
+        -------
+        str or TerminalRepr
+            The message, or pytest's own report of another exception.
+        """
+        from deixis.testing.expectations import ExpectationError
+
+        return str(excinfo.value) if isinstance(excinfo.value, ExpectationError) else super().repr_failure(excinfo)
+
 
 class LayoutItem(pytest.Item):
     """One expectation of a layout script."""

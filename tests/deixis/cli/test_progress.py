@@ -70,6 +70,15 @@ def test_work_that_counts_no_steps_shows_its_time_alone(shown: Terminal, monkeyp
     assert "/?" not in shown.getvalue() and "left:" not in shown.getvalue()
 
 
+def test_steps_without_a_known_total_are_counted(shown: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    with redirect_stderr(shown), progress_bar("following, frames") as report:
+        assert report is not None
+        report(41, None)
+        assert until(lambda: " 41 " in shown.getvalue())
+    assert "/?" not in shown.getvalue() and "left:" not in shown.getvalue()
+
+
 def test_short_work_shows_no_bar(shown: Terminal) -> None:
     with redirect_stderr(shown), progress_bar("reading") as report:
         assert report is not None

@@ -43,7 +43,7 @@ def boxes_within(draw: st.DrawFn, outer: Box, least: float) -> Box:
 def tables(draw: st.DrawFn) -> NDArray[np.float64]:
     """Draw boxes of shape (n, 4), of which some lie on others and some overlap."""
     boxes: list[Box] = []
-    for _ in range(draw(st.integers(1, 9))):
+    for _ in range(draw(st.integers(1, 6))):
         outer = draw(st.sampled_from([FRAME, *boxes]))
         boxes.append(draw(boxes_within(outer, 8.0)))
     return np.array(boxes)
@@ -55,7 +55,7 @@ def placed(table: NDArray[np.float64], sizes: list[Name], points: NDArray[np.flo
     return [place for place in places if place is not None]
 
 
-@given(tables(), st.lists(names, min_size=9, max_size=9))
+@given(tables(), st.lists(names, min_size=6, max_size=6))
 def test_no_two_names_share_a_place(table: NDArray[np.float64], sizes: list[Name]) -> None:
     boxes = [place.box for place in placed(table, sizes[: len(table)])]
     for box, other in combinations(boxes, 2):
@@ -64,7 +64,7 @@ def test_no_two_names_share_a_place(table: NDArray[np.float64], sizes: list[Name
         assert box.shared(np.array([FRAME]))[0] >= 0.99 * box.area
 
 
-@given(tables(), st.lists(names, min_size=9, max_size=9))
+@given(tables(), st.lists(names, min_size=6, max_size=6))
 def test_lines_enter_nothing_foreign(table: NDArray[np.float64], sizes: list[Name]) -> None:
     places = name_places(table, sizes[: len(table)], FRAME, NO_POINTS)
     lines = [place.leader for place in places if place is not None and place.leader is not None]
@@ -113,7 +113,7 @@ def is_free(box: Box, table: NDArray[np.float64], names: list[NamePlace], arrow:
     return bool(is_inside and not (covers_names or covers_lines or covers_edges or box.shared(ends).any()))
 
 
-@given(tables(), st.lists(names, min_size=9, max_size=9), names)
+@given(tables(), st.lists(names, min_size=6, max_size=6), names)
 def test_a_word_covers_an_edge_only_if_it_must(table: NDArray[np.float64], sizes: list[Name], word: Name) -> None:
     arrow = arrow_between(table, 0, len(table) - 1)
     named = placed(table, sizes[: len(table)], arrow)

@@ -42,6 +42,14 @@ def test_a_failed_expectation_names_its_line_and_says_why(pytester: pytest.Pytes
     result.stdout.fnmatch_lines(["*dinner.layout:5: expected: follows left(knife, fork)", "*cannot hold*"])
 
 
+def test_a_malformed_expectation_is_reported_without_frames(pytester: pytest.Pytester) -> None:
+    (pytester.path / "dinner.layout").write_text(LAYOUT + "# expect: is nice\n")
+    result = pytester.runpytest_inprocess(*OPTIONS)
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["*dinner.layout:4:1: 'is nice' is not an expectation*"])
+    result.stdout.no_fnmatch_line("*src/deixis*")
+
+
 def test_a_broken_script_fails_with_its_place(pytester: pytest.Pytester) -> None:
     (pytester.path / "dinner.layout").write_text("fork lft of plate\n# expect:\n#   consistent\n")
     result = pytester.runpytest_inprocess(*OPTIONS)
@@ -80,6 +88,8 @@ def test_an_expectation_may_follow_the_word_expect() -> None:
     text = "fork left of plate\n# expect: consistent\n#   follows left(fork, plate)\n"
     expected = [Expectation(2, "consistent"), Expectation(3, "follows left(fork, plate)")]
     assert list(expectations_in(text, "dinner.layout")) == expected
+    repeated = text.replace("#   follows", "# expect: follows")
+    assert list(expectations_in(repeated, "dinner.layout")) == expected
 
 
 @pytest.mark.parametrize(
@@ -101,9 +111,10 @@ def test_lines_that_are_no_expectation_are_refused(block: str, message: str) -> 
         ('assert_follows("fork left of plate", "left(fork plate)")', "*expected a comma and a second name*"),
         ('assert_grounds("fork left of plate", "table.scene.json", {"fork": 9})', "*'9', which is not in the scene*"),
         ('deixis_script("none.layout")', "*none.layout: there is no such file"),
+        ('assert_follows("fork left of plate", "left(plate, fork)")', "*left(plate, fork) cannot hold*"),
     ],
 )
-def test_bad_input_is_reported_at_the_line_of_the_test(pytester: pytest.Pytester, line: str, message: str) -> None:
+def test_failures_are_reported_at_the_line_of_the_test(pytester: pytest.Pytester, line: str, message: str) -> None:
     (pytester.path / "table.scene.json").write_text(SCENE)
     pytester.makepyfile(f"from deixis.testing import *\ndef test_dinner(deixis_script):\n    {line}\n")
     result = pytester.runpytest_inprocess(*OPTIONS)

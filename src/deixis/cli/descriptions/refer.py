@@ -52,7 +52,7 @@ def refer(
     ] = None,
     ask: Annotated[bool, typer.Option("--ask", help="Ask yes-or-no questions until the object is decided.")] = False,
     oracle: Annotated[
-        str | None, typer.Option(metavar="ID", help="Have the object with this id answer the questions.")
+        str | None, typer.Option(metavar="ID", help="Answer the questions for the object with this id.")
     ] = None,
     until: Annotated[
         float, typer.Option(metavar="P", help="--ask and --oracle stop at this probability, at most 0.95.")

@@ -22,7 +22,7 @@ def tell(
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Describe a layout or a scene in English, in few sentences.
+    """Describe a layout or a scene in English, in a few sentences.
 
     Exit 0 if the text, read again, gives the same facts, and singles out each object of a scene; 1 if not.
     """

@@ -378,9 +378,9 @@ def consolidate(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     with (
         _board(memory) as board,
         Session(memory or default_memory()) as session,
-        progress_bar("learning from the experiences"),
+        progress_bar("learning from the experiences") as progress,
     ):
-        done = run(board, session)
+        done = run(board, session, progress=progress)
     if as_json:
         print_json(done.to_dict())
         return

@@ -53,8 +53,8 @@ def unlearn(
     if not has_episodes(memory or default_memory()):
         require_memory(memory)
     with Session(memory) as session:
-        with progress_bar("taking back what was taught"):
-            found = session.unlearn(selection, dry_run)
+        with progress_bar("taking back what was taught") as progress:
+            found = session.unlearn(selection, dry_run, progress)
         if found and not dry_run:
             note_change(session.path)
     if as_json:

@@ -47,7 +47,7 @@ def scoreboard(
     size: Annotated[
         list[int] | None, typer.Option(metavar="N", min=4, max=1000, help="Only tables of this many objects.")
     ] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the answer (.png, .svg, .pdf).")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Compare the engines on generated tables, and on the photographs in $DEIXIS_DATA if it is set."""
@@ -81,7 +81,7 @@ def open_ended(
     cache: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Folder that keeps the computed descriptors.")
     ] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the answer (.png, .svg, .pdf).")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Teach each learner one kind after another, in random orders, until it learns no more."""

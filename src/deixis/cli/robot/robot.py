@@ -97,9 +97,14 @@ def run(
     if story is not None:
         require_picture(story / OVERVIEW)  # before the story, which happens once
     lines: deque[str] = deque(maxlen=SHOWN_LINES)
+    events, progress = 0, None
 
     def report(line: str) -> None:
+        nonlocal events
+        events += 1
         lines.append(line)
+        if progress is not None:
+            progress(events, None)
         if not view and not as_json:
             print_line(line)
 
@@ -109,8 +114,8 @@ def run(
         typing = threading.Thread(target=_listen, args=(robot, report), name="typed words", daemon=True)
         if sys.stdin is not None and sys.stdin.isatty():
             typing.start()
-        waiting = progress_bar("following the story") if as_json else nullcontext()
-        with _watched(robot, lines) if view else waiting:
+        waiting = progress_bar("following the story, events") if as_json else nullcontext()
+        with _watched(robot, lines) if view else waiting as progress:
             robot.wait()
             if robot.problem is not None:
                 raise LiveError(f"{robot.problem}; the story has ended")
@@ -132,8 +137,8 @@ def run(
         }
         written = None
         if story is not None:
-            with progress_bar("drawing the story"):
-                written = write_story(robot, story)
+            with progress_bar("drawing the story, pictures") as drawn:
+                written = write_story(robot, story, drawn)
     if as_json:
         print_json(answer)
         return

@@ -37,7 +37,7 @@ def relate(
     ] = None,
     matrix: Annotated[bool, typer.Option("--matrix", help="Print a matrix with subjects in rows.")] = False,
     words: Annotated[
-        bool, typer.Option("--words", help="Also the words that people would accept, with their probabilities.")
+        bool, typer.Option("--words", help="Print also the words that people would accept, with their probabilities.")
     ] = False,
     image: Image = None,
     as_json: AsJson = False,

@@ -185,10 +185,10 @@ def literal(name: str) -> Designation:
 
 
 class Plan:
-    """Facts and the words for their objects, which are said more plainly until they are read as what they are.
+    """Facts and the words for their objects, which are made plainer until reading the text gives the same facts.
 
-    ``misread`` are the facts for which no wording was found; ``read_again`` is False if there was no time to read the
-    sentences.
+    ``misread`` are the facts for which no wording was found; ``read_again`` is False if the time limit was reached
+    before the sentences were read.
     """
 
     def __init__(

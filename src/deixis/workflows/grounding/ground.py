@@ -181,9 +181,9 @@ class GroundingRequest:
 
     @cached_property
     def conflict(self) -> Conflict | None:
-        """The facts that cannot hold together, as few as there are, where the script contradicts itself.
+        """Minimal set of facts that cannot hold together, if the script contradicts itself.
 
-        Raises OutOfTimeError where there was no time to find few, LimitError for more objects than can be closed.
+        Raises OutOfTimeError if the time limit is reached first, and LimitError if there are too many objects.
         """
         return find_conflict(self.implied)
 

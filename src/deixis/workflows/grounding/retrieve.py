@@ -41,7 +41,7 @@ class Knowledge(Protocol):
     """Learned knowledge, as a session or its knowledge store offers it."""
 
     def meaning(self) -> Meaning:
-        """Return the words and sizes in force.
+        """Return the present words and sizes.
 
         Returns
         -------

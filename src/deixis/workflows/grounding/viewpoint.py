@@ -218,7 +218,7 @@ def _notes(found: Viewpoints) -> tuple[str, ...]:
         others = ", or ".join(side_text(view.angle, view.mirrored) for view in found.ties if view is not best)
         notes.append(f"the description fits as well {others}")
     if not found.everywhere:
-        notes.append("there was no time to look from every side, so that the probability is approximate")
+        notes.append("time limit reached before every side was tried; the probability is approximate")
     elif not found.exact:
         notes.append("not all groundings were counted for every side, so that the probability is approximate")
     return tuple(notes)

@@ -36,6 +36,7 @@ from deixis.reasoning.temporal.timeline import Timeline
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.memory.journal import Part
+    from deixis.memory.perceptual.protocol import Progress
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
     from deixis.perception.scene import Scene
     from deixis.workflows.knowledge.learn import Learned, Recording
@@ -647,6 +648,7 @@ def consolidate(
     session: _Learner,
     by: str = "consolidation",
     undescribed: Callable[[Scene], object] | None = None,
+    progress: Progress | None = None,
 ) -> Consolidation:
     """Learn a layout from each finished experience that a person described, once.
 
@@ -663,6 +665,8 @@ def consolidate(
         Name under which the lessons are written to a blackboard.
     undescribed
         Called, once, with the table of each experience in which nothing was said.
+    progress
+        Called with the number of experiences that are done, and of all.
 
     Returns
     -------
@@ -672,11 +676,12 @@ def consolidate(
     done = {each.statement.subject for each in board.holding(Pattern(predicate=CONSOLIDATED))}
     lessons: dict[str, str] = {}
     left_out: dict[str, str] = {}
-    for each in experiences(board):
-        if each.finish is None or each.name in done:
-            continue
+    finished = [(each, each.finish) for each in experiences(board) if each.finish is not None and each.name not in done]
+    for number, (each, finish) in enumerate(finished):
+        if progress is not None:
+            progress(number, len(finished))
         fluents = episode(board, each.name)
-        last = math.nextafter(each.finish, -math.inf)
+        last = math.nextafter(finish, -math.inf)
         known = {layout.lesson for layout in session.layouts()}
         words = [  # in this experience, not before
             f for f in fluents if f.statement.predicate == "said" and f.start.lower >= each.start

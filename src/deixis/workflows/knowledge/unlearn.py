@@ -41,6 +41,7 @@ from deixis.workflows.layouts.read import as_scene
 if TYPE_CHECKING:
     from deixis.memory.episodes.blackboard import Blackboard
     from deixis.memory.perceptual.level import LevelMemory
+    from deixis.memory.perceptual.protocol import Progress
     from deixis.ontology.lessons.read import Provenance
     from deixis.ontology.lessons.types import Lesson
 
@@ -147,7 +148,13 @@ class Unlearned(Answer):
         )
 
 
-def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, dry_run: bool = False) -> Unlearned:
+def unlearn(
+    selection: Selection,
+    knowledge: KnowledgeStore,
+    views: ViewStore,
+    dry_run: bool = False,
+    progress: Progress | None = None,
+) -> Unlearned:
     """Take back everything that a selection came from, in one step over all stores.
 
     Parameters
@@ -160,6 +167,8 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
         The perceptual store.
     dry_run
         True to change nothing.
+    progress
+        Called with the number of lessons that are taken back, and of all.
 
     Returns
     -------
@@ -193,7 +202,7 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
         found = Unlearned(lessons, tuple(_changes(before, after)), fluents, tuple(new))
         if (lessons or revised or after) and not dry_run:
             part = None if board is None or not changes else board.part(*changes, by=UNLEARN)
-            _write(lessons, revised, before, after, memory, knowledge, part)
+            _write(lessons, revised, before, after, memory, knowledge, part, progress)
         elif board is not None and not dry_run:
             board.write(*changes, by=UNLEARN)
     return found
@@ -449,6 +458,7 @@ def _write(
     memory: LevelMemory | None,
     knowledge: KnowledgeStore,
     episodes: Part | None,
+    progress: Progress | None,
 ) -> None:
     """Write what is left of the teachings of views, remove the lessons, and change the episodes."""
     from deixis.learning.views.views import batch_without
@@ -479,4 +489,4 @@ def _write(
             return
         parts.append(memory.handle.part(change))
     knowledge.memory(create=True)  # it decides a write of the others
-    write_together(knowledge.unlearning(lessons, links, revised), parts)
+    write_together(knowledge.unlearning(lessons, links, revised, progress), parts)

@@ -57,8 +57,10 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         robot.says("t3 is a cup.")
         robot.says("t99 is a bowl.")
         assert robot.answered(60.0)
-        write_story(robot, folder / "pictures")
+        steps: list[tuple[int, int]] = []
+        write_story(robot, folder / "pictures", lambda *step: steps.append(step))
         moments = len(key_moments(robot.board, robot.began))
+        assert steps == [(number, moments + 1) for number in range(moments)]
         return Ran(folder / "memory", folder / "pictures", lines, robot.things(), moments)
 
 

@@ -20,6 +20,7 @@ from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.report.json_answers import check_to_dict
 from deixis.report.layouts.script import check_lines
 from deixis.session import Session
+from deixis.testing import assert_checks
 from deixis.workflows.grounding.check import Check
 from deixis.workflows.layouts.read import read_script
 
@@ -45,14 +46,14 @@ def roles(checked: Check, verdict: RoleVerdict) -> set[str]:
 
 
 def test_a_table_that_is_laid_right_has_nothing_wrong_with_it() -> None:
-    checked = check(formal_setting())
-    assert checked.table.well and checked.conforms
+    checked = assert_checks(FULL, formal_setting())
+    assert checked.conforms
     assert len(checked.table.of(RoleVerdict.CORRECT)) == 12
 
 
 def test_a_swap_that_labels_reveal_is_reported_for_both() -> None:
-    checked = check(swapped(formal_setting(), "dinner_knife", "dinner_fork"))
-    assert roles(checked, RoleVerdict.MISPLACED) == {"dinner_knife", "dinner_fork"}
+    swap = {"dinner_knife", "dinner_fork"}
+    checked = assert_checks(FULL, swapped(formal_setting(), *sorted(swap)), misplaced=swap)
     assert not checked.table.well and not checked.conforms
     told = {str(b.fact): b for entry in checked.table.of(RoleVerdict.MISPLACED) for b in entry.broken}
     broken = told["left(dinner_fork, dinner_plate)"]
@@ -64,8 +65,8 @@ def test_what_is_missing_and_what_is_extra_is_named() -> None:
     scene = without(formal_setting(), "water_glass")
     napkin = PerceivedObject("n2", (0.5, 0.1), (0.6, 0.2), label="napkin")
     vase = PerceivedObject("v", (0.7, 0.1), (0.8, 0.2), label="vase")
-    checked = check(replace(scene, objects=(*scene.objects, napkin, vase)))
-    assert roles(checked, RoleVerdict.MISSING) == {"water_glass"}
+    more = replace(scene, objects=(*scene.objects, napkin, vase))
+    checked = assert_checks(FULL, more, missing={"water_glass"}, extra={"n2", "v"})
     assert {extra.perceived: extra.reason for extra in checked.table.extra} == {
         "n2": "one napkin too many",
         "v": "the layout has no unfilled role for a vase",
@@ -89,18 +90,19 @@ CUBE = (0.3, 0.3, 0.3)
 
 
 def test_a_thing_of_wrong_size_and_place_is_not_a_misplaced_fork() -> None:
-    checked = check(Scene((PLATE, box("o2", (0.3, 0.06, 0.0), CUBE))), "fork left of plate")
-    assert roles(checked, RoleVerdict.MISSING) == {"fork"} and not roles(checked, RoleVerdict.MISPLACED)
+    scene = Scene((PLATE, box("o2", (0.3, 0.06, 0.0), CUBE)))
+    checked = assert_checks("fork left of plate", scene, missing={"fork"}, extra={"o2"})
     (extra,) = checked.table.extra
-    assert (extra.perceived, extra.reason) == ("o2", "it fits none of the unfilled roles of the layout")
+    assert extra.reason == "it fits none of the unfilled roles of the layout"
     assert not checked.table.well
 
 
 def test_what_is_far_too_high_for_a_knife_is_no_misplaced_knife() -> None:
     mug = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.1))  # as long and as wide as a knife that lies aslant
     low = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.02))
-    for other, verdict in ((mug, RoleVerdict.MISSING), (low, RoleVerdict.MISPLACED)):
-        assert roles(check(Scene((PLATE, other)), "butter_knife left of plate"), verdict) == {"butter_knife"}
+    layout, knife = "butter_knife left of plate", {"butter_knife"}
+    assert_checks(layout, Scene((PLATE, mug)), missing=knife, extra={"o2"})
+    assert_checks(layout, Scene((PLATE, low)), misplaced=knife)
 
 
 def test_a_thing_with_the_size_or_label_of_a_fork_is_misplaced() -> None:
@@ -117,7 +119,7 @@ def test_a_thing_in_the_place_of_a_fork_is_undetermined() -> None:
 
 def test_what_is_called_a_fork_and_is_seen_in_part_is_misplaced() -> None:
     part = replace(box("o2", (0.4, 0.06, 0.0), (0.03, 0.05, 0.01)), label="fork", confidence=0.85)
-    assert roles(check(Scene((PLATE, part)), "fork left of plate"), RoleVerdict.MISPLACED) == {"fork"}
+    assert_checks("fork left of plate", Scene((PLATE, part)), misplaced={"fork"})
 
 
 def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:
@@ -131,8 +133,7 @@ def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:
         ),
         unit="m",
     )
-    checked = check(scene, text)
-    assert roles(checked, RoleVerdict.MISCOLOURED) == {"red_mug"}
+    checked = assert_checks(text, scene, miscoloured={"red_mug"})
     assert roles(checked, RoleVerdict.CORRECT) == {"napkin", "plate", "knife"}
     assert not checked.table.well and not checked.conforms
     assert "miscoloured red_mug (a): blue, not red" in check_lines(checked)
@@ -184,8 +185,8 @@ def test_a_thing_of_a_narrower_name_fills_its_role() -> None:
 def test_what_is_optional_may_be_absent_and_may_fail() -> None:
     scene = read_scene({"objects": [{"id": "f", "min": [0, 0], "max": [1, 1], "label": "fork"},
                                     {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip
-    checked = check(scene, "fork left of plate; optional vase above plate; optional fork above plate")
-    assert checked.table.well and checked.conforms
+    checked = assert_checks("fork left of plate; optional vase above plate; optional fork above plate", scene)
+    assert checked.conforms
     assert roles(checked, RoleVerdict.ABSENT) == {"vase"}
 
 
@@ -199,8 +200,8 @@ def test_what_is_absent_is_said_to_be_dispensable_and_not_how(how: str) -> None:
 def test_a_hedged_fact_that_fails_is_a_warning_and_no_fault() -> None:
     scene = read_scene({"objects": [{"id": "f", "min": [0, 0], "max": [1, 1], "label": "fork"},
                                     {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip
-    checked = check(scene, "usually fork right of plate")
-    assert checked.table.well and checked.conforms
+    checked = assert_checks("usually fork right of plate", scene)
+    assert checked.conforms
     assert SH.Warning in set(
         rdflib.Graph().parse(data=checked.report, format="turtle").objects(None, SH.resultSeverity)
     )
@@ -209,7 +210,7 @@ def test_a_hedged_fact_that_fails_is_a_warning_and_no_fault() -> None:
 def test_denials_and_choices_are_checked() -> None:
     scene = read_scene({"objects": [{"id": "f", "min": [0, 0], "max": [1, 1], "label": "fork"},
                                     {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip
-    assert check(scene, "fork left of or above plate; fork not right of plate").table.well
+    assert_checks("fork left of or above plate; fork not right of plate", scene)
     wrong = check(scene, "fork not left of plate; fork right of or above plate")
     assert len(wrong.table.broken) == 2 and not wrong.conforms
 

@@ -161,7 +161,9 @@ def test_described_experience_becomes_a_layout_once(board: Blackboard) -> None:
     finish_recording(board, "First supper", 3.0, by="test")
     start_recording(board, "silent", 4.0, by="test")
     finish_recording(board, "silent", 5.0, by="test")
-    done = consolidate(board, pupil)
+    steps: list[tuple[int, int]] = []
+    done = consolidate(board, pupil, progress=lambda *step: steps.append(step))
+    assert steps == [(0, 2), (1, 2)]
     assert (done.lessons, done.left_out) == ({"First supper": "lesson-1"}, {"silent": "nothing was said in it"})
     ((script, scene),) = pupil.taught
     assert (script.name, [str(fact) for fact in script.facts]) == ("First_supper", ["right(fork, plate)"])

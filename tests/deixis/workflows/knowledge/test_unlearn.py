@@ -203,6 +203,17 @@ def test_each_part_of_a_selection_must_hold(lessons: list[tuple[Lesson, Any]], e
             back(lesson="nothing")
 
 
+def test_taking_back_several_lessons_counts_them(
+    lessons: list[tuple[Lesson, Any]], empty: Path, tmp_path: Path
+) -> None:
+    with Session(shutil.copytree(empty, tmp_path / "memory")) as session:
+        taught(session, lessons)
+        now, steps = datetime.now(UTC), []
+        since = Selection(since=now - timedelta(1))
+        found = session.unlearn(since, progress=lambda *step: steps.append(step))
+        assert len(found.lessons) == 2 and steps == [(0, 2), (1, 2)]
+
+
 def test_a_selection_names_something() -> None:
     with pytest.raises(SettingError, match="name what to take back"):
         Selection()
