@@ -159,6 +159,8 @@ class RelatorChunker:
         led = at > 0 and self.norms[at - 1] in ("on", "in", "to", "at", "into", "onto")
         if self.norms[at] in ("inside", "outside") and led and self.nouns.adjective_before_noun(at):
             return None  # 'on outside pouches'
+        if self.norms[at] == "nearby" and at > 0 and self.norms[at - 1] in ("a", "the", "some"):
+            return None  # 'on a nearby surface'
         begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
         if self.norms[at] == "close" and begins and (self.nouns.is_determiner(at + 1) or self.norms[at + 1] == "and"):
             return None  # 'close the lid'
@@ -205,8 +207,8 @@ class RelatorChunker:
                     return (end, "PREP", preposition) if takes_object else None
                 shorter = self._alone.longest(self.norms, at)
                 stranded = any(chunk.type == "REL" for chunk in self.chunks) or self.norms[end] in ("and", "or", ",")
-                last = [chunk.type for chunk in self.chunks[-3:]]
-                stranded = stranded or (last[:2] == ["NP", "NP"] and last[2:3] in (["BE"], ["VERB"]))
+                types = [chunk.type for chunk in self.chunks[-3:]]
+                stranded = stranded or (types[:2] == ["NP", "NP"] and types[2:3] in (["BE"], ["VERB"]))
                 stands_alone = end > at + 1 or self.norms[at] in ("near", "against", "beneath", "alongside", "beside")
                 if (
                     shorter is None

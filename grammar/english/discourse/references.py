@@ -38,7 +38,7 @@ NAMED = re.compile(
 )
 """Noun phrase at the end of a clause."""
 MOVED = re.compile(
-    r"\b(?:the|a|an|your|my)\s+([a-z]+(?:\s+(?!on|in|under|behind)[a-z]+)?)\s+(?:on|onto|in|into|under|behind|near|by|next\s+to)\s+$",
+    r"\b(?:the|a|an|your|my)\s+([a-z]+(?:\s+(?!on|in|under|behind|is\b|are\b|was\b|were\b)[a-z]+)?)\s+(?:on|onto|in|into|under|behind|near|by|next\s+to)\s+$",
     re.IGNORECASE,
 )
 """Object of a verb before the place that it is moved to."""
