@@ -249,6 +249,9 @@ class NounFinder:
             )
         if norm in NUMBERS or norm in ORDINALS or norm[0].isdigit():
             return True
+        described = norm.endswith("ly") and (is_adjective(self.norms[at + 1]) or self.norms[at + 1].endswith("ed"))
+        if at > 0 and self.norms[at - 1] in prepositions() and described and norm not in HEDGES:
+            return self._continues(at + 2)  # 'in loosely tied plastic bags', 'on easily accessible shelves'
         if norm in self._closed:
             if norm in ("about", "around"):
                 return self.number(at + 1) is not None
@@ -274,9 +277,6 @@ class NounFinder:
         if norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at) or self.is_participle_of_one(at):
             return True
         after_preposition = at > 0 and (self.norms[at - 1] == "of" or self.norms[at - 1] in prepositions())
-        described = norm.endswith("ly") and (is_adjective(self.norms[at + 1]) or self.norms[at + 1].endswith("ed"))
-        if after_preposition and described and norm not in HEDGES:
-            return self._continues(at + 2)  # 'in loosely tied plastic bags', 'on easily accessible shelves'
         shaped = norm.endswith("ed") and len(norm) > 4 and self._nouns.knows(self.norms[at + 1])
         ordered = shaped and self.follows_command(at)
         return (after_preposition or ordered) and shaped and self.is_noun(at + 1)  # 'with crumpled paper'
@@ -553,11 +553,11 @@ class NounFinder:
             and self._predicate_follows(at)
             and is_adjective(before)
         ):
+            if back == 1 and self.norms[0] in PUT_VERBS | FIND_VERBS:
+                return True  # 'use top shelves for glasses'
             if self._nouns.knows(before):  # 'the glass stands above …'
                 return False
             two_before = self.norms[back - 1] if back else ""
-            if back == 1 and two_before in PUT_VERBS | FIND_VERBS:
-                return True  # 'use top shelves for glasses'
             return two_before in DETERMINERS or two_before in POSSESSIVES or is_adjective(two_before)
         if (after in IS_FORMS and after != "'s") or (after in MODALS and after != "can"):
             return True

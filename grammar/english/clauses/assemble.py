@@ -362,7 +362,7 @@ class Assembly:
                 guesses = self.guesses_of_fragments.get(other.span, frozenset())
                 bare = replace(other, predicates=())
                 self.clauses.append(Clause(bare, other.predicates, other.span, guesses=guesses))
-            else:
+            elif not self._each_with_its_place(other, ",", Mood.STATEMENT):
                 misunderstood(other.span, "nothing is said about this", "say where it is")
         if self.front:
             span = (self.front[0].span[0], self.front[-1].span[1])

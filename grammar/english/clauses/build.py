@@ -985,8 +985,8 @@ _FASTENING = word_set(
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
 _SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
 _AMOUNTS = word_set(
-    "length layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering heap"
-    " mound bit amount quantity helping cm mm centimetre centimeter millimetre inch gram g kg ml litre liter"
+    "length layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering"
+    " heap mound bit amount quantity helping cm mm centimetre centimeter millimetre inch gram g kg ml litre liter"
 )
 """Nouns of an amount, before the substance or the things that are meant."""
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})

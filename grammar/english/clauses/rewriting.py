@@ -680,7 +680,7 @@ def _with_reserved_places(chunks: list[Chunk], at: int) -> list[Chunk] | None:
     while [type_at(chunks, at + k) for k in range(3)] == ["NP", "PREP", "NP"]:
         place, relator, thing = chunks[at].value, chunks[at + 1].value, chunks[at + 2].value
         noun = last_word(place.head)
-        kept = _names_things(thing) and not place.plural
+        kept = _names_things(thing) and (bool(place.adjectives) or not place.plural)
         if relator.preposition.phrase != "for" or noun not in _STORING or not kept:
             return None
         inside = noun in VESSELS | HOLDERS

@@ -645,8 +645,8 @@ class References:
         if word in VIEWER_WORDS:
             return self.viewer
         if word == "object":  # which a command leaves out: that of the command before
-            handled = next((f.subject for f in self.recent[:1] if f.sentence >= self.sentence - 1), None)
-            return handled if handled is not None and handled.role is Role.THING else None
+            late = [f.subject for f in self.recent[:1] if f.sentence >= self.sentence - 1]
+            return next((entity for entity in late if entity is not None and entity.role is Role.THING), None)
         if word == "both" and phrase.of is not None and phrase.of.pronoun == "they" and not phrase.of.head:
             phrase = replace(phrase, of=None)
         if phrase.of is not None and word not in ("it", "they"):
@@ -724,7 +724,7 @@ class References:
         return any(end <= phrase.span[0] and end - start > MIN_LOST for start, end in self.lost)
 
     def _are_persons(self, phrase: NounPhrase) -> bool:
-        """Return True for *they* after persons of its sentence: *so that guests can sit while they fill their plates*."""
+        """Return True for *they* after persons of its sentence: *so that guests can sit while they eat*."""
         words = re.findall(r"[a-z]+", self.text[self.start : phrase.span[0]].casefold())
         return any(word.endswith("s") and word[:-1] in PEOPLE for word in words)
 

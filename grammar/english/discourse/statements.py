@@ -211,7 +211,7 @@ class Statements(Relations):
             self._add("count", (leaf,), (), value="0", how=replace(self.how, positive=True))
 
     def _say_here(self, subject: Entity, others: list[Entity]) -> None:
-        """Read *the door is warm, so keep the butter there*: at the place that was named last, or that of the heading."""
+        """Read *the door is warm, so keep it there*: at the place that was named last, or that of the heading."""
         late = [f for f in self.references.recent[:2] if f.sentence >= self.how.sentence - 1]
         named = [e for f in late for e in (*f.others, f.subject) if e is not None and e.itself is not subject.itself]
         place = next((e for e in named if e.role is not Role.PERSON and self._holding(e) is not None), None)

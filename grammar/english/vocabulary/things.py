@@ -24,8 +24,8 @@ _QUALITIES = word_set(
     " flavour flavor sound silence visibility access accessibility flexibility stability"
 )
 _ACTS = word_set(
-    "measure delivery step stage phase task job action activity process operation turn move motion start beginning finish"
-    " attempt try effort adjustment placement presentation preparation installation maintenance"
+    "step stage phase task job action activity process operation turn move motion start beginning finish"
+    " measure delivery attempt try effort adjustment placement presentation preparation installation maintenance"
     " inspection measurement alignment orientation rotation transition conversation communication discussion"
     " interaction circulation navigation storage organisation organization consideration requirement"
     " recommendation suggestion explanation description instruction direction exception tip idea option"
@@ -60,8 +60,6 @@ _KEPT = word_set(
     " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
-_STOREYS = word_set("top bottom upper lower middle lowest highest first second third")
-"""Words before *level* that make it a storey of a thing."""
 _SELDOM_THINGS = word_set("level pitch bit outside inside")
 """Such words that the ontology knows, and that are seldom things by themselves."""
 _ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude", "acy", "ability", "ibility", "logy")
@@ -157,8 +155,6 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     last = last_word(noun).rpartition("-")[2]  # 'eye-level'
     if last not in _WITHOUT_PLACE and nouns.knows(last):
         return True
-    if last == "level" and words[0] in _STOREYS:
-        return True  # 'on the bottom level'
     if last in _WITHOUT_PLACE:
         return len(words) > 1 and last in _KEPT
     return last in _CONCRETE or not last.endswith(_ENDINGS)
