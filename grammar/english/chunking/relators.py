@@ -208,7 +208,7 @@ class RelatorChunker:
                 shorter = self._alone.longest(self.norms, at)
                 stranded = any(chunk.type == "REL" for chunk in self.chunks) or self.norms[end] in ("and", "or", ",")
                 types = [chunk.type for chunk in self.chunks[-3:]]
-                stranded = stranded or (types[:2] == ["NP", "NP"] and types[2:3] in (["BE"], ["VERB"]))
+                stranded = stranded or (types[:2] == ["NP", "NP"] and types[2:] in (["BE"], ["VERB"]))
                 stands_alone = end > at + 1 or self.norms[at] in ("near", "against", "beneath", "alongside", "beside")
                 if (
                     shorter is None

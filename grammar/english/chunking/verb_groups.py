@@ -556,8 +556,12 @@ class VerbChunker(RelatorChunker):
         """Return True for an adjective after a verb such as *looks*, and False for *directly at the door*."""
         norm, after = self.norms[at], self.norms[at + 1]
         manner = norm.endswith("ly") and after in ("at", "to", "toward", "towards", "into", "over", "out", "down", "up")
+        if self.norms[at : at + 3] == ["out", "of", "place"]:
+            return True
         places = norm in prepositions() or norm in places_alone()
-        return not places and not manner and (is_adjective(norm) or norm.endswith("ly"))
+        form = self._verbs.get(norm)
+        participle = form is not None and form.form in ("past", "participle")  # 'it looks lost on the shelf'
+        return not places and not manner and (is_adjective(norm) or norm.endswith("ly") or participle)
 
     def _takes_object(self, kind: str, at: int) -> bool:
         if not self.nouns.starts(at) or self._alone.longest(self.norms, at) is not None or self._match(at) is not None:

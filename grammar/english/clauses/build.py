@@ -550,9 +550,9 @@ class Builder(Transformer[Any, Built]):
         known_place = known_place and (
             noun.phrase.determiner == "same" or any(a.word in _KNOWN for a in noun.phrase.adjectives)
         )  # 'always in the same place'
-        unnamed = noun.phrase.determiner is None and not noun.phrase.plural and bool(noun.phrase.head)
+        single = noun.phrase.determiner is None and not noun.phrase.plural and bool(noun.phrase.head)
         idle = idle or (known_place and not noun.phrase.predicates)
-        idle = idle or (relator.preposition.phrase == "before" and unnamed and noun.phrase.count is None)
+        idle = idle or (relator.preposition.phrase == "before" and single and noun.phrase.count is None)
         idle = idle and noun.phrase.owner is None  # 'on display', but 'above your display'
         if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")

@@ -223,7 +223,7 @@ def _without_kinds_of_members(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_denied_participles_apart(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *it lies left of the plate without touching it* with a comma, so that it is said of the subject."""
+    """Return *it lies left of the plate without touching it* with a comma, so that it describes the subject."""
     for i in range(len(chunks) - 1, 0, -1):
         if chunks[i].type == "NOT" and chunks[i].value == "without" and chunks[i - 1].type == "NP":
             chunks = [*chunks[:i], put_in("COMMA", chunks[i]), *chunks[i:]]

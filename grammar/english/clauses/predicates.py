@@ -664,8 +664,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         denied = following.positive is not marker.positive  # 'behind the door, not covered by a cloth'
         return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span, positive=not denied)
     positive = following.positive if marker.positive else not following.positive
-    if lemma in _KEEPING and relation == "from" and (left_place := place_left(following)) is not following:
-        relation, positive = left_place.relation, not positive
+    if lemma in _KEEPING and relation == "from" and (left := place_left(following)) is not following:
+        relation, positive = left.relation, not positive
     return replace(
         following,
         relation=relation,

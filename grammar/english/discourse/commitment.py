@@ -124,7 +124,7 @@ UNREAL = re.compile(
     r"|,\s*an?\s+(?:error|mistake|slip|misprint)\b"
     r"|\bwhich\s+(?:i|we)\s+(?:doubt|deny|(?:do\s+not|don['\u2019]t)\s+(?:believe|think))\b"
     r"|\b(?:sign|label|note|card|notice|poster|plaque|caption|sticker)\s+(?:reads?|says?)\s*:"
-    r"|\bnothing\s+like\s+(?:as|so)\b"
+    r"|\bnothing\s+like\s+(?:as|so)\b|\ball\s+that(?:['\u2019]s|\s+is)\s+(?:missing|lacking|needed)\b"
     r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
     r"|\b(?:theory|theories|story|map|guidebook|article|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
     r"(?:puts?|places?|has|locates?|says?|holds?|goes|claims?|suggests?)\b"
@@ -235,7 +235,7 @@ ELSEWHERE = re.compile(
 
 
 _ASKED = re.compile(
-    r"(?:if|in\s+case)\s+(?:you|anyone|anybody|someone|somebody|people|he|she|they|guests)(?:['\u2019](?:re|s)|\s+(?:are|is|ever|should))?\s+"
+    r"(?:if|in\s+case)\s+(?:you|any\s?(?:one|body)|some\s?(?:one|body)|people|he|she|they|guests)(?:['\u2019](?:re|s)|\s+(?:are|is|ever|should))?\s+"
     r"(?:asks?|asking|wonders?|wondering|looks?\s+for|looking\s+for|(?:needs?|wants?|like)\s+to\s+know)\b",
     re.IGNORECASE,
 )

@@ -80,7 +80,7 @@ class _Clause:
     shared: bool
 
     def key(self) -> Hashable:
-        """Return what clauses have in common that are said of several subjects at once."""
+        """Return what two clauses share if one clause can state both."""
         content = self.stated.content
         qualified = (self.stated.condition, self.stated.past, self.stated.uncertain, content.optional, content.weight)
         subjects = () if self.shared else (content,)
