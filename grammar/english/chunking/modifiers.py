@@ -221,6 +221,7 @@ class ModifierFinder(NounFinder):
                     "outside",
                     "close",
                     "next",
+                    "nearby",
                     "adjacent",
                     "second",
                     "same",

@@ -674,7 +674,7 @@ class NounFinder:
         """Return True for the verb of a statement: *cards stand behind …*."""
         form = self._verbs.get(self.norms[at])
         spatial = form is not None and form.form in ("s", "base") and form.kind in ("posture", "lean", "face")
-        return spatial and self._predicate_follows(at)
+        return spatial and self._predicate_follows(at) and not self.is_noun(at)
 
     def _reports(self, at: int) -> bool:
         """Return True for *states* and *claims* before what they report: *the owner states that the cup is …*."""

@@ -159,6 +159,8 @@ class RelatorChunker:
         led = at > 0 and self.norms[at - 1] in ("on", "in", "to", "at", "into", "onto")
         if self.norms[at] in ("inside", "outside") and led and self.nouns.adjective_before_noun(at):
             return None  # 'on outside pouches'
+        if self.norms[at] == "nearby" and at > 0 and self.norms[at - 1] in ("a", "the", "some"):
+            return None  # 'on a nearby surface'
         begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
         if self.norms[at] == "close" and begins and (self.nouns.is_determiner(at + 1) or self.norms[at + 1] == "and"):
             return None  # 'close the lid'

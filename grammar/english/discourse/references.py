@@ -38,7 +38,7 @@ NAMED = re.compile(
 )
 """Noun phrase at the end of a clause."""
 MOVED = re.compile(
-    r"\b(?:the|a|an|your|my)\s+([a-z]+(?:\s+(?!on|in|under|behind)[a-z]+)?)\s+(?:on|onto|in|into|under|behind|near|by|next\s+to)\s+$",
+    r"\b(?:the|a|an|your|my)\s+([a-z]+(?:\s+(?!on|in|under|behind|is\b|are\b|was\b|were\b)[a-z]+)?)\s+(?:on|onto|in|into|under|behind|near|by|next\s+to)\s+$",
     re.IGNORECASE,
 )
 """Object of a verb before the place that it is moved to."""
@@ -645,8 +645,8 @@ class References:
         if word in VIEWER_WORDS:
             return self.viewer
         if word == "object":  # which a command leaves out: that of the command before
-            handled = next((f.subject for f in self.recent[:1] if f.sentence >= self.sentence - 1), None)
-            return handled if handled is not None and handled.role is Role.THING else None
+            late = [f.subject for f in self.recent[:1] if f.sentence >= self.sentence - 1]
+            return next((entity for entity in late if entity is not None and entity.role is Role.THING), None)
         if word == "both" and phrase.of is not None and phrase.of.pronoun == "they" and not phrase.of.head:
             phrase = replace(phrase, of=None)
         if phrase.of is not None and word not in ("it", "they"):

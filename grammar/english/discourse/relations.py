@@ -434,9 +434,9 @@ class Relations(Mentions):
             if before and before[-1].value != predicate.part and subject not in before[-1].subjects:
                 arguments = list(before[-1].arguments)  # 'at the left end of the rail … and at the right end'
         if not arguments and not predicate.arguments and predicate.relation == "part" and predicate.part:
-            inside = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation == "inside"]
-            holders = [a for d in inside[-1:] for a in d.arguments if last_word(a.noun) in VESSELS | HOLDERS]
-            arguments = holders if len(holders) == 1 and subject not in inside[-1].subjects else []  # 'in the back'
+            packed = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation == "inside"][-1:]
+            holders = [a for d in packed for a in d.arguments if last_word(a.noun) in VESSELS | HOLDERS]
+            arguments = holders if len(holders) == 1 and subject not in packed[0].subjects else []  # 'in the back'
         if predicate.relation == "edge":
             self.edge = predicate.part
         others += arguments

@@ -181,8 +181,8 @@ class Statements(Relations):
             return
         elif relation == "state" and ("being" in predicate.adverbs or not UNJOINED.isdisjoint(self.how.guesses)):
             return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
-        elif relation == "state" and (self.references.lost or str(value).endswith("ing")):
-            return  # 'fill the flask half full with the mixture you want to distill': the words can belong to others
+        elif relation == "state" and self._is_doubtful_state(predicate):
+            return
         elif relation == "state":
             value = self._participle(value, predicate)
         self._add(relation, (subject,), (), value=value)
@@ -195,6 +195,12 @@ class Statements(Relations):
         if told is None or forms[told].form not in ("s", "base"):
             return told or lemma
         return next((word for word, form in forms.items() if form.lemma == lemma and form.form == "ing"), lemma)
+
+    def _is_doubtful_state(self, predicate: Predicate) -> bool:
+        """Return True where words beside a state were not understood: *fill it half full with what you want to use*."""
+        lost = self.references.lost
+        acts = predicate.value is not None and predicate.value.word.endswith("ing")
+        return acts or any(end <= predicate.span[0] or start > predicate.span[1] for start, end in lost)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         pass

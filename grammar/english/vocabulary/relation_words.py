@@ -9,7 +9,7 @@ from deixis.grammar.english.tree import Degree
 from deixis.grammar.english.vocabulary.tables import inverted, table, word_set
 
 ARRANGEMENTS = word_set(
-    "triangle semicircle pattern fan pyramid arc spiral diamond grid formation heap arrangement layout order"
+    "spectrum triangle semicircle pattern fan pyramid arc spiral diamond grid formation heap arrangement layout order"
     " shape mound batch clump zigzag checkerboard sequence orientation"
 )
 """Nouns after *in* that say how several things lie."""

@@ -107,6 +107,8 @@ _ONLY_VERBS = word_set(
     " allow prevent complete"
 )
 """Verbs that are not the names of things, as *hold* and *keep* are."""
+_SUGGESTING = word_set("suggest recommend advise prefer think")
+"""Verbs of persons, which are not nouns."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
     " including having stuffing alternating filling"
@@ -183,6 +185,6 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
         third = (form is not None and form.form == "s") or word in _THIRD_PERSONS or word.endswith(("ifies", "izes"))
         third = third and place > 0 and not nouns.knows(word)
         adverb = word.endswith("ly") and len(word) > 4 and word not in _ADVERBS_NOT and not nouns.knows(word)
-        if third or adverb or word in _OF_CLAUSES or word in OTHER_UNITS & _TIMES:
+        if third or adverb or (place and word in _SUGGESTING) or word in _OF_CLAUSES or word in OTHER_UNITS & _TIMES:
             return True
     return False

@@ -94,6 +94,9 @@ def test_here_and_there_mean_the_last_place(text: str, expected: list[str]) -> N
         ("Place the sofa (cushions removed) behind the box.", ["behind(sofa, box)"]),
         ("Put the maps on outside pouches.", ["on(maps, pouches)"]),
         ("Fruits go in loosely tied bags.", ["inside(fruits, bags)"]),
+        ("Store the mugs in a nearby box.", ["inside(mugs, box)"]),
+        ("The jars are in the box as the top layer.", ["inside(jars, box)"]),
+        ("Store food in bags as the top layer.", ["inside(food, bags)"]),
         ("Place the sofas on their ends.", ["state(sofas, 'on end')"]),
     ],
 )  # fmt: skip
