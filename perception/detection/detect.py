@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.left_out import Fate, Pieces, holes, left_out, missing_lines, odd_sizes
+from deixis.perception.detection.density import evenly_dense
+from deixis.perception.detection.left_out import Above, Fate, Pieces, holes, left_out, missing_lines, odd_sizes
 from deixis.perception.detection.outline import hull_of, occupied_cells, oriented_box, rim_of, upright_box
 from deixis.perception.detection.segmentation.boundaries import agglomerated, boundaries
 from deixis.perception.detection.segmentation.joining import whole_things
@@ -19,7 +20,7 @@ from deixis.perception.detection.segmentation.parts import Parts
 from deixis.perception.detection.segmentation.supervoxels import supervoxels
 from deixis.perception.detection.segmentation.surface import Surface, surface_of
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.shown import Shows, is_large, is_one_object, is_small
+from deixis.perception.detection.shown import Shows, is_bare_table, is_large, is_one_object, is_small
 from deixis.perception.detection.table.heights import Raised, raised
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.table_top import table_top
@@ -165,7 +166,8 @@ def detect(
             f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
             " coordinates must be metres: check the unit, or the depth_scale of the intrinsics"
         )
-    view = View(points, kept, cloud.organised, camera_pose_of(cloud, settings))
+    view = evenly_dense(View(points, kept, cloud.organised, camera_pose_of(cloud, settings)), settings)
+    points = view.points
     if len(points) >= settings.least_points and is_small(points, settings):
         return _alone(cloud, view, settings)
     begin = stage or (lambda name: None)
@@ -177,8 +179,10 @@ def detect(
     begin(SEPARATING)
     found = _on_table(cloud, seen[settings.table - 1], settings) if seen else None
     alone = settings.table == 1 and len(points) >= settings.least_points
-    if alone and not _has_objects(found, seen, settings) and is_one_object(points, settings, len(seen)):
-        return _alone(cloud, view, settings)
+    if alone and not _has_objects(found, seen, settings):
+        bare = bool(seen) and is_bare_table(seen[0], settings)
+        if is_one_object(points, settings, len(seen), bare):
+            return _alone(cloud, view, settings)
     if found is None:
         return _nothing(cloud, view, settings, _no_table(settings, 0))
     if len(seen) > settings.table:
@@ -209,6 +213,7 @@ def detect_above(cloud: PointCloud, plane: Plane, settings: DetectionSettings | 
     if not len(kept):
         return None
     view = View(cloud.points[kept].astype(np.float64), kept, cloud.organised, camera_pose_of(cloud, settings))
+    view = evenly_dense(view, settings)
     return _on_table(cloud, FoundTable(plane, table_top(view, plane, settings), view), settings)
 
 
@@ -254,7 +259,7 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     from deixis.perception.detection.kernels import in_frame as in_table_frame
 
     table, neighbours = _neighbours(table, settings)
-    points, kept, top = table.view.points, table.view.places, table.top.on
+    points, top = table.view.points, table.top.on
     pose = table.view.pose
     few = top[:: max(1, len(top) // settings.plane.refinement_size)]
     frame = table_frame(table.plane, points[few] if len(top) else points, pose, settings)
@@ -262,7 +267,8 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     at, heights, distance = in_table_frame(points, frame, viewer)
     view = _TableView(frame, at, heights, distance, viewer, top)
     rising = raised(view.heights, view.distance, neighbours, settings)
-    pieces = _pieces(view, table, rising, neighbours, cloud.colours, settings)
+    least = np.maximum(settings.height, settings.heights.object_noise_ratio * rising.upper(view.distance))
+    pieces = _pieces(view, table, rising, least, neighbours, cloud.colours, settings)
     found = pieces.things
     large = _large_note(view, settings)
     seen_so = missing_lines(table.view)
@@ -270,13 +276,14 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
         on = pieces.of >= 0
         on[top] = True
         seen_so = holes(table.view, on, settings.notes)
-    missed = (*left_out(table.top, view.heights, pieces, settings), *seen_so)
+    above = Above(view.points, rising.above | (view.heights >= settings.reach), least, table.view.counts)
+    missed = (*left_out(table.top, above, pieces, settings), *seen_so)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     if not found.max(initial=BACKGROUND) >= 0:
         if not large and max(_sides(view)) < settings.scale.min_bare_table_length:
             return None
         wall = _wall_note(view, settings)
-        why = ("nothing is on the table", *(large or _small_note(view, settings)), *(wall or missed))
+        why = ("nothing is on the table", *(large or _small_note(view, settings)), *wall, *missed)
         shows = Shows.ROOM if large or wall or _is_floor(view, settings) else Shows.TABLE
         return Detection(cloud, table.plane, view.frame, labels, np.zeros((0, 2, 3)), (), why, shows)
     there = np.flatnonzero(found >= 0)
@@ -288,12 +295,13 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     boxes = np.stack([upright_box(thing, settings.outlines, rim) for thing, rim in zip(members, rims, strict=True)])
     low = boxes[:, 0, :2]
     order = np.lexsort((low[:, 1], low[:, 0].round(2)))
-    labels[kept] = np.append(np.argsort(order), BACKGROUND)[found]
+    labels[table.view.places] = np.append(np.argsort(order), BACKGROUND)[found]
     oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
     sizes = odd_sizes((boxes[:, 1] - boxes[:, 0]).max(axis=1), settings.notes)
     little = _sparse_note(view, found, settings)
     notes = (*(large or little or _small_note(view, settings)), *sizes, *missed)
     shows = Shows.ROOM if large or little or _is_floor(view, settings) else Shows.TABLE
+    labels = table.view.labelled(labels)
     return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes, shows)
 
 
@@ -329,6 +337,7 @@ def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detect
     thing = moved(points, frame)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     labels[view.places] = 0
+    labels = view.labelled(labels)
     box = upright_box(thing, settings.outlines)
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
     notes = [f"no table was found: the whole cloud, {sides} cm, was taken for a single object"]
@@ -409,11 +418,15 @@ def _pieces(
     view: _TableView,
     table: FoundTable,
     rising: Raised,
+    least: NDArray[np.float64],
     neighbours: NDArray[np.int32],
     colours: NDArray[np.uint8] | None,
     settings: DetectionSettings,
 ) -> Pieces:
-    """Return the pieces of surface above the table with their fates; ``colours`` are those of the whole cloud."""
+    """Return the pieces of surface above the table with their fates.
+
+    ``least`` (n,) are the least heights of objects, and ``colours`` those of the whole cloud.
+    """
     from deixis.perception.detection.kernels import renumbered
 
     of = np.full(len(view.points), BACKGROUND, np.int32)
@@ -429,13 +442,12 @@ def _pieces(
     found = segments(surface, settings)
     counts = np.bincount(found)
     within = np.bincount(found, table.top.is_below[chosen]) / counts
-    least = np.maximum(settings.height, settings.heights.object_noise_ratio * rising.upper(view.distance[chosen]))
     fates = np.full(len(counts), Fate.DISCARDED, np.int8)
     fates[(counts >= settings.least_points) & (within < settings.heights.min_share_above_table)] = Fate.BESIDE
     members = np.split(np.argsort(found, kind="stable"), np.cumsum(counts)[:-1])
     for piece in np.flatnonzero((counts >= settings.least_points) & (fates == Fate.DISCARDED)).tolist():
         points = surface.points[members[piece]]
-        rise = np.quantile(points[:, 2] / least[members[piece]], settings.heights.object_quantile)
+        rise = np.quantile(points[:, 2] / least[chosen[members[piece]]], settings.heights.object_quantile)
         if rise > 1.0 and np.ptp(points, axis=0).max() >= settings.least_length:
             fates[piece] = Fate.REPORTED
     of[chosen] = found

@@ -8,6 +8,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.outline import cell_codes
 from deixis.perception.detection.settings import DetectionSettings, NoteSettings
 from deixis.perception.detection.table.table_top import TableTop
 from deixis.perception.detection.table.viewpoint import View
@@ -45,17 +46,53 @@ class Pieces:
         return result
 
 
-def left_out(
-    top: TableTop, heights: NDArray[np.float64], pieces: Pieces, settings: DetectionSettings
-) -> tuple[str, ...]:
+@dataclass(frozen=True, eq=False)
+class Above:
+    """Points of a view (n, 3) in the frame of the table, and which of them are above it.
+
+    ``mask`` (n,) marks the points above the table. ``least`` (n,) is the height in metres that an object has at least
+    at their distances. ``counts`` (n,) are the numbers of points of the cloud for which they stand.
+    """
+
+    points: NDArray[np.float64]
+    mask: NDArray[np.bool_]
+    least: NDArray[np.float64]
+    counts: NDArray[np.int64]
+
+    def groups(self, chosen: NDArray[np.bool_], settings: DetectionSettings) -> tuple[int, int]:
+        """Return the number of connected groups of points that could be objects, and the number of their points.
+
+        Parameters
+        ----------
+        chosen
+            Mask of the points that are grouped, shape (n,).
+        settings
+            Least number of points of an object, its least height, and the side of the cells that connect points.
+
+        Returns
+        -------
+        tuple of int
+            Numbers of groups and of points of the cloud; 0 if no group is large and high enough.
+        """
+        places = np.flatnonzero(chosen)
+        of = connected(self.points[places], settings.notes.group_cell)
+        counts = np.bincount(of, self.counts[places])
+        high = np.bincount(of, self.points[places, 2] > self.least[places]) / np.bincount(of)
+        large = (counts >= settings.least_points) & (high > 1 - settings.heights.object_quantile)
+        return int(large.sum()), int(counts[large].sum())
+
+
+def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSettings) -> tuple[str, ...]:
     """Return notes on the points above the table that are not reported as objects.
+
+    Every connected group of as many points as an object has at least, and as high, is counted in a note.
 
     Parameters
     ----------
     top
         Top of the table.
-    heights
-        Heights of the n points of the view above the plane, shape (n,), in metres.
+    above
+        Points of the view, and which of them are above the table.
     pieces
         Connected pieces of points above the table.
     settings
@@ -66,32 +103,64 @@ def left_out(
     tuple of str
         One sentence for each kind of omission.
     """
-    limits = settings.notes
-    beyond = top.outside
-    high = (heights > settings.reach) & (beyond < 0)
+    missed = above.mask & (pieces.things < 0)
+    aside = missed & ((top.outside > settings.top.slack) | np.append(pieces.fates == Fate.BESIDE, False)[pieces.of])
+    high = missed & ~aside & (above.points[:, 2] >= settings.reach)
+    small = missed & ~aside & ~high
     notes = []
-    if high.sum() > limits.min_high_share * max(len(top.on), 1):
+    if above.groups(high, settings)[0]:
         notes.append(
-            f"something is more than {100 * settings.reach:.0f} cm above the table, higher than objects are searched:"
-            " a person, a lamp or a wall"
+            f"{above.counts[high].sum()} points are more than {100 * settings.reach:.0f} cm above the table, higher"
+            " than objects are searched: a person, a lamp or a wall"
         )
-    counts = pieces.points
-    beside = (pieces.fates == Fate.BESIDE) & (counts >= limits.min_piece_points)
-    if beside.any():
-        some = "a piece" if beside.sum() == 1 else f"{beside.sum()} pieces"
-        notes.append(f"{some} beside the table, of {counts[beside].sum()} points, {_was(beside)} left out")
-    discarded = counts[pieces.fates == Fate.DISCARDED].sum()
-    if discarded > limits.min_discarded_share * counts.sum() and discarded >= limits.min_piece_points:
-        notes.append(
-            f"{discarded} of the {counts.sum()} points above the table are in pieces too small or too low for objects"
-        )
-    if _reaches_over(beyond, pieces, limits):
+    number, points = above.groups(aside, settings)
+    if number:
+        some = "a piece" if number == 1 else f"{number} pieces"
+        notes.append(f"{some} beside the table, of {points} points, {'was' if number == 1 else 'were'} left out")
+    discarded, total = (int(above.counts[which].sum()) for which in (small, above.mask & ~aside & ~high))
+    many = discarded >= settings.least_points and discarded > settings.notes.min_discarded_share * total
+    if many or above.groups(small, settings)[0]:
+        notes.append(f"{discarded} of the {total} points above the table are in pieces too small or too low for objects")
+    if _reaches_over(top.outside, pieces, settings.notes):
         notes.append("something reaches over the edge of the table: a hand, an arm, or an object that hangs over it")
     return tuple(notes)
 
 
-def _was(which: NDArray[np.bool_]) -> str:
-    return "was" if which.sum() == 1 else "were"
+def connected(points: NDArray[np.float64], cell: float) -> NDArray[np.intp]:
+    """Return the number of the connected group of each point, from 0.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    cell
+        Side of the cells of a grid in metres; points in the same cell or in adjacent ones are connected.
+
+    Returns
+    -------
+    ndarray
+        Numbers of shape (n,).
+
+    Examples
+    --------
+    >>> connected(np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [9.0, 9.0, 9.0]]), 0.02).tolist()
+    [0, 0, 1]
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    codes, of = np.unique(cell_codes(points, cell), return_inverse=True)
+    steps = [(x << 42) + (y << 21) + z for x in (0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)]
+    starts, ends = [], []
+    for step in (each for each in steps if each > 0):
+        at = np.minimum(np.searchsorted(codes, codes + step), max(len(codes) - 1, 0))
+        met = np.flatnonzero(codes[at] == codes + step)
+        starts.append(met)
+        ends.append(at[met])
+    start, end = np.concatenate(starts), np.concatenate(ends)
+    graph = coo_array((np.ones(len(start), np.bool_), (start, end)), shape=(len(codes), len(codes)))
+    groups: NDArray[np.intp] = connected_components(graph, directed=False)[1][of].astype(np.intp)
+    return groups
 
 
 def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSettings) -> bool:
@@ -102,7 +171,7 @@ def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSet
     outside = np.bincount(of[beyond[chosen] > settings.overhang], minlength=count)
     inside = np.bincount(of[beyond[chosen] < 0], minlength=count)
     both = (outside > settings.min_overhang_share * total) & (inside > settings.min_overhang_share * total)
-    return bool((both & (outside >= settings.min_piece_points)).any())
+    return bool((both & (outside >= settings.min_overhang_points)).any())
 
 
 def missing_lines(view: View) -> tuple[str, ...]:

@@ -75,6 +75,30 @@ def occupied_cells(plan: NDArray[np.float64], cell: float) -> NDArray[np.float64
     return middles
 
 
+def cell_codes(points: NDArray[np.float64], cell: float) -> NDArray[np.int64]:
+    """Return a number for the cell of each point in a grid around their middle; it grows by x, then y, then z.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres. Those more than a million cells from the middle count as at that distance.
+    cell
+        Side of the cubic cells, in metres.
+
+    Returns
+    -------
+    ndarray
+        Codes of shape (n,): 2**42, 2**21 and 1 more for the next cell along x, y and z.
+    """
+    if not len(points):
+        return np.zeros(0, np.int64)
+    half = 2**20
+    middle = np.median(points[:: max(1, len(points) // 10_000)], axis=0)
+    x, y, z = (np.clip(np.floor((points - middle) / cell), 1 - half, half - 2) + half).astype(np.int64).T
+    codes: NDArray[np.int64] = (x << 42) | (y << 21) | z
+    return codes
+
+
 def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
     """Return the corners (k, 2) of the convex hull of places (n, 2), in order; None for too few or collinear places.
 

@@ -69,8 +69,12 @@ class ScaleSettings(_Thresholds):
     test_a_small_cloud_is_one_object_without_a_table."""
     max_object_length: float = 1.2
     """Metres. A longer cloud is not a single object. Tested by test_the_kind_of_a_cloud_is_reported."""
-    max_sheet_thickness: float = 0.03
-    """Metres. A thinner cloud as wide as a table is an empty table. Tested by test_the_kind_of_a_cloud_is_reported."""
+    min_sheet_share: float = 0.7
+    """Fraction of the points on one plane above which a cloud as wide as a table is a table: the faces of a box hold
+    less. Tested by test_a_table_with_objects_only_at_its_edge_is_a_table."""
+    min_whole_table_length: float = 0.48
+    """Metres. A shorter surface that is wholly in view is an object, such as a tray or a board. Tested by
+    test_a_flat_thing_without_a_table_is_one_object."""
     object_gap: float = 0.02
     """Metres. Cell size of the grid on which one object is connected. Tested by
     test_the_kind_of_a_cloud_is_reported."""
@@ -83,8 +87,8 @@ class ScaleSettings(_Thresholds):
     """Fraction of the points of a standing object that must be so far inside; an adjoining face has hardly any. Tested
     by test_the_kind_of_a_cloud_is_reported."""
     min_rim_share: float = 0.7
-    """Area of a supposed object on a face relative to that of the face, above which it is the rim of the face, or its
-    other side, as of a tray. Tested by test_the_rim_of_a_tray_is_not_an_object_on_a_table."""
+    """Area of a supposed object on a face relative to that of the face, and share of the directions in which something
+    rises at the outline of the face, above which it is the rim of the face, or its other side, as of a tray. Tested by test_the_rim_of_a_tray_is_not_an_object_on_a_table."""
     min_table_share: float = 0.12
     """Fraction of the points that must be on the table or its objects; below it, the cloud shows a room. No scene or
     test tried depends on it."""
@@ -131,6 +135,15 @@ class PlaneSettings(_Thresholds):
     max_standing_height: float = 0.35
     """Metres above a plane up to which a point stands on it: the height of a bottle. No scene or test tried depends on
     it."""
+    outline_sides: int = 8
+    """Number of directions in which a plane is measured for its outline, which has twice as many sides. No scene or
+    test tried depends on it."""
+    outline_inset: float = 0.01
+    """Metres inside its outline at which points are above or below a plane: those nearer are often the edge of the
+    table. Tested by test_the_edge_of_a_table_does_not_stand_on_its_underside."""
+    below_ratio: float = 1.5
+    """Tolerances below a plane at which a point is below it. Tested by
+    test_a_bar_across_the_table_is_not_the_table."""
     min_standing_share: float = 0.002
     """Fraction of all points that must stand on a plane that is not a floor: some objects, even few. Tested by
     test_a_table_with_few_objects_is_preferred_to_a_larger_floor, and
@@ -199,6 +212,30 @@ class ViewpointSettings(_Thresholds):
     assumed_elevation: float = math.radians(45.0)
     """Radians above the table at which it is searched. Tested by
     test_a_cloud_with_a_wrong_origin_keeps_its_own_y_axis."""
+
+
+@dataclass(frozen=True, slots=True)
+class DensitySettings(_Thresholds):
+    """Thinning of bare points that are far denser on some surfaces than on others."""
+
+    sample_size: int = 10_000
+    """Number of points around which the spacing is measured. No scene or test tried depends on it."""
+    neighbours: int = 4
+    """Number of nearest points that give the spacing: those beside a point of a grid. No scene or test tried depends on
+    it."""
+    max_spacing: float = 0.05
+    """Metres. Points farther apart are not a surface on which objects can be seen. No scene or test tried depends on
+    it."""
+    dense_share: float = 0.1
+    """Fraction of the points that must be as dense as the densest surface. No scene or test tried depends on it."""
+    min_ratio: float = 6.0
+    """Ratio of the usual spacing to that of the densest points above which they are thinned; a camera gives up to 3
+    between directions. Tested by test_things_denser_than_their_table_are_found."""
+    thinned_ratio: float = 4.0
+    """Ratio of these spacings after thinning, at least. Tested by test_things_denser_than_their_table_are_found."""
+    max_cell: float = 0.005
+    """Metres. Maximum distance of thinned points, so that small objects keep enough of them. Tested by
+    test_things_denser_than_their_table_are_found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -581,17 +618,17 @@ class OutlineSettings(_Thresholds):
 class NoteSettings(_Thresholds):
     """Conditions for notes about points that are not reported as objects."""
 
-    min_piece_points: int = 200
-    """Minimum number of points of a left-out piece for a note; fewer are hardly an object. Tested by
-    test_unreported_points_get_a_note."""
-    min_high_share: float = 0.02
-    """Number of points too high above the table, relative to those of its top, above which a note is given. Tested by
-    test_unreported_points_get_a_note."""
+    group_cell: float = 0.02
+    """Metres. Side of the cells of the grid on which left-out points are connected to groups. Tested by
+    test_every_raised_group_is_reported_or_counted."""
     min_discarded_share: float = 0.05
-    """Fraction of the points above the table in pieces too small or too low for objects, above which a note is given.
-    Tested by test_unreported_points_get_a_note."""
+    """Fraction of the points above the table in pieces too small or too low for objects, above which a note is given
+    even if they are scattered. Tested by test_points_in_very_small_pieces_get_a_note."""
     overhang: float = 0.1
     """Minimum distance in metres beyond the outline of the table that a piece over its edge reaches. Tested by
+    test_unreported_points_get_a_note."""
+    min_overhang_points: int = 200
+    """Minimum number of points beyond the edge of a piece that reaches over it. Tested by
     test_unreported_points_get_a_note."""
     min_overhang_share: float = 0.1
     """Fraction of such a piece that must be so far outside, and fraction that must be inside. Tested by
@@ -635,7 +672,7 @@ class DetectionSettings:
         Minimum number of points of an object, and its minimum length in metres.
     concavity, step
         Angle between two surfaces in radians, and height between them in metres, at which they are two objects.
-    scale, plane, viewpoint, top, heights, surface, supervoxels, boundaries, joining, outlines, notes
+    scale, density, plane, viewpoint, top, heights, surface, supervoxels, boundaries, joining, outlines, notes
         Thresholds of the steps.
     """
 
@@ -651,6 +688,7 @@ class DetectionSettings:
     concavity: float = math.radians(35.0)
     step: float = 0.0025
     scale: ScaleSettings = field(default_factory=ScaleSettings)
+    density: DensitySettings = field(default_factory=DensitySettings)
     plane: PlaneSettings = field(default_factory=PlaneSettings)
     viewpoint: ViewpointSettings = field(default_factory=ViewpointSettings)
     top: TableTopSettings = field(default_factory=TableTopSettings)

@@ -7,7 +7,9 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.outline import SECTORS
 from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.table.tables import FoundTable
 
 
 class Shows(StrEnum):
@@ -45,10 +47,10 @@ def is_small(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
     return bool(settings.least_length <= longest < limits.max_small_length and middle < limits.min_table_length)
 
 
-def is_one_object(points: NDArray[np.float64], settings: DetectionSettings, levels: int = 0) -> bool:
-    """Return True if points without a table with objects are one connected object, and not a sheet.
-
-    A sheet as wide as a table is an empty table.
+def is_one_object(
+    points: NDArray[np.float64], settings: DetectionSettings, levels: int = 0, is_bare_table: bool = False
+) -> bool:
+    """Return True if points without a table with objects are one connected object, and not a table.
 
     Parameters
     ----------
@@ -58,21 +60,64 @@ def is_one_object(points: NDArray[np.float64], settings: DetectionSettings, leve
         Extents of objects and tables.
     levels
         Number of level planes. Two or more are tables if there is room for them.
+    is_bare_table
+        True if most points are on one plane whose outline nothing surrounds. It is a table if it is as wide as one.
 
     Returns
     -------
     bool
-        True for a single object, such as a scan of a cup.
+        True for a single object, such as a scan of a cup, or a tray.
     """
     limits = settings.scale
-    thin, middle, longest = _extents(points, settings)
+    _, middle, longest = _extents(points, settings)
     if not settings.least_length <= longest < limits.max_object_length:
         return False
     if levels > 1 and longest >= levels * limits.min_table_length:
         return False
-    if middle >= limits.min_table_length and thin < limits.max_sheet_thickness:
+    if is_bare_table and middle >= limits.min_table_length:
         return False
     return share_connected(points, max(limits.object_gap, longest / 30)) > limits.min_connected_share
+
+
+def is_bare_table(table: FoundTable, settings: DetectionSettings) -> bool:
+    """Return True if most points of a view are on the top of a table, which is not an object such as a tray.
+
+    A surface that is wholly in view and short is a tray or a board, and a rim around a surface is that of a tray.
+
+    Parameters
+    ----------
+    table
+        Table that was found, with its view.
+    settings
+        Least share of the points, and least length of a table whose whole outline is in view.
+
+    Returns
+    -------
+    bool
+        False for a face of an object, which holds only some of the points.
+    """
+    limits, top, view = settings.scale, table.top, table.view
+    if len(top.on) < limits.min_sheet_share * len(view.points):
+        return False
+    plan = view.points @ table.plane.across.T
+    few = top.on[:: max(1, len(top.on) // 2000)]
+    is_short = _extents(view.points[top.on], settings)[2] < limits.min_whole_table_length
+    if is_short and not _is_cut_by_the_image(table):
+        return False
+    heights = table.plane.heights(view.points)
+    at_edge = np.abs(top.outside) < limits.min_inset
+    rising = at_edge & (heights > settings.plane.min_standing_height) & (heights < settings.plane.max_standing_height)
+    x, y = (plan[rising] - plan[few].mean(axis=0)).T
+    sectors = np.floor(np.arctan2(y, x) / (2 * np.pi) * SECTORS).astype(np.int64) % SECTORS
+    return len(np.unique(sectors)) < limits.min_rim_share * SECTORS
+
+
+def _is_cut_by_the_image(table: FoundTable) -> bool:
+    """Return True if the top of a table reaches the border of an image, so that more of it may be out of view."""
+    if table.view.organised is None:
+        return False
+    pixels = zip(table.view.pixels, table.view.organised, strict=True)
+    return any(bool(((line[table.top.on] < 2) | (line[table.top.on] > size - 3)).any()) for line, size in pixels)
 
 
 def is_large(points: NDArray[np.float64], settings: DetectionSettings) -> bool:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.outline import in_largest_piece
 from deixis.perception.detection.settings import DetectionSettings, PlaneSettings
 
 
@@ -151,16 +152,21 @@ def table_plane(points: NDArray[np.float64], pose: CameraPose, settings: Detecti
 
 @dataclass(frozen=True, eq=False)
 class LevelPlane:
-    """Plane, the points on it (k, 3), and the number of points that stand on it."""
+    """Plane, the points on it (k, 3), and the numbers of points that stand on it and that are below it."""
 
     plane: Plane
     points: NDArray[np.float64]
     standing: int
+    below: int
 
     @property
     def score(self) -> int:
-        """Score of the plane as a table: its points, and ten times the points that stand on it."""
-        return len(self.points) + 10 * self.standing
+        """Score of the plane as a table: its points, ten times those that stand on it, less three times those below.
+
+        Standing points count up to the number of the plane's own, so that the side of a box among many objects does not
+        exceed the table. The sides of objects have points on both sides of their planes, a table has none below it.
+        """
+        return len(self.points) + 10 * min(self.standing, len(self.points)) - 3 * self.below
 
     def has_objects(self, total: int, settings: PlaneSettings) -> bool:
         """Return True if enough of ``total`` points stand on the plane to be objects.
@@ -226,7 +232,10 @@ def level_of(
         Plane with its points and the number of points that stand on it.
     """
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
-    return LevelPlane(plane, on, _standing(plane, on, free, settings))
+    lower = sample[plane.heights(sample) < -settings.below_ratio * tolerance]
+    piece = _largest_piece(plane, on)
+    standing, below = _standing(plane, piece, free, settings), _standing(plane.turned(), piece, lower, settings)
+    return LevelPlane(plane, on, standing, below)
 
 
 def tolerance_at(points: NDArray[np.float64], pose: CameraPose, settings: PlaneSettings) -> NDArray[np.float64]:
@@ -340,12 +349,26 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
     return Plane(normal, float(offset))
 
 
+def _largest_piece(plane: Plane, on: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the points (k, 3) of the largest connected piece of those ``on`` a plane (n, 3), without strips of walls."""
+    if len(on) < 3:
+        return on
+    plan = on @ plane.across.T
+    extents = np.subtract(*np.percentile(plan, (99, 1), axis=0))
+    return on[in_largest_piece(plan, 3 * float(np.sqrt(extents.prod() / len(on))))]
+
+
 def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:
-    """Return the number of ``free`` points that are above the rectangle around the points ``on`` the plane."""
+    """Return the number of ``free`` points that are above the outline of the points ``on`` the plane.
+
+    The outline is a polygon with sides in fixed directions, a little inside, because the edge of a table is often seen.
+    """
     if len(on) < 3:
         return 0
-    across = plane.across
+    turns = np.arange(settings.outline_sides) * np.pi / settings.outline_sides
+    across = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
     low, high = np.percentile(on @ across.T, (1, 99), axis=0)
-    heights, plan = plane.heights(free), free @ across.T
-    standing = (heights > settings.min_standing_height) & (heights < settings.max_standing_height)
-    return int((standing & ((plan >= low) & (plan <= high)).all(axis=1)).sum())
+    heights = plane.heights(free)
+    plan = free[(heights > settings.min_standing_height) & (heights < settings.max_standing_height)] @ across.T
+    inside = (plan >= low + settings.outline_inset) & (plan <= high - settings.outline_inset)
+    return int(inside.all(axis=1).sum())

@@ -33,6 +33,7 @@ class View:
     places: NDArray[np.intp]
     organised: tuple[int, int] | None
     pose: CameraPose
+    same: NDArray[np.intp] | None = None  # (2, m): left-out points of a thinned cloud, and the points that replace them
 
     @cached_property
     def pixels(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -55,6 +56,35 @@ class View:
             View of the chosen points from an equal viewpoint.
         """
         return replace(self, points=self.points[chosen], places=self.places[chosen])
+
+    def labelled(self, labels: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Return labels in which each left-out point has the label of the point that replaces it.
+
+        Parameters
+        ----------
+        labels
+            Labels of all points of the cloud.
+
+        Returns
+        -------
+        ndarray
+            Labels of the shape of the given ones.
+        """
+        if self.same is None:
+            return labels
+        result = labels.copy()
+        result[self.same[0]] = labels[self.same[1]]
+        return result
+
+    @cached_property
+    def counts(self) -> NDArray[np.int64]:
+        """Number of points of the cloud for which each point stands, shape (n,): 1, or more in a thinned cloud."""
+        ones = np.ones(len(self.places), np.int64)
+        if self.same is None:
+            return ones
+        size = int(max(self.places.max(initial=0), self.same.max(initial=0))) + 1
+        result: NDArray[np.int64] = ones + np.bincount(self.same[1], minlength=size)[self.places]
+        return result
 
 
 def finite_places(cloud: PointCloud) -> NDArray[np.intp]:
