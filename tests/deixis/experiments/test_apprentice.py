@@ -18,6 +18,7 @@ from deixis.experiments.apprentice.tables import lay_tampered
 from deixis.grammar.read import read_script_file
 from deixis.grammar.script import Script
 from deixis.reasoning.comparison.explanation import MistakeKind
+from deixis.reasoning.entailment.realisation.verification import facts_that_hold
 from deixis.report.renderers import to_rows
 
 TINY = ApprenticePlan(tables=1, seed=3, first_tables=1, layouts=("childs_place",), processes=1)
@@ -71,6 +72,25 @@ def test_mistakes_show_on_the_table(script: Script) -> None:
             (first, *_) = mistake.names
             assert (first in there) == (mistake.kind is not MistakeKind.MISSING)
             assert (first in clean) == (mistake.kind is not MistakeKind.EXTRA)
+
+
+def test_displaced_things_violate_facts_about_things_in_place() -> None:
+    script = read_script_file(str(example("tea.layout")))
+    table = lay_tampered(script, 9, 3)
+    graph = script.graph()
+    boxes = {thing.name: thing.box[:, :2] for thing in table.laid.table.things}
+    moved = {name for one in table.mistakes for name in one.names}
+    nowhere = np.array([[0.0, 0.0], [1e-6, 1e-6]])
+    held = facts_that_hold(graph, np.array([boxes.get(node, nowhere) for node in graph.nodes]))
+    violated = [
+        {fact.subject, fact.object}
+        for fact, holds in zip(graph.facts(), held, strict=True)
+        if not holds and {fact.subject, fact.object} <= boxes.keys()
+    ]
+    for one in table.mistakes:
+        if one.kind in (MistakeKind.DISPLACED, MistakeKind.SWAPPED):
+            others = moved - set(one.names)
+            assert any(ends & set(one.names) and not ends & others for ends in violated)
 
 
 def test_table_without_mistakes_is_as_laid(script: Script) -> None:

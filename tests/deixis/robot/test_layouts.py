@@ -124,7 +124,6 @@ def test_few_quantities_keep_the_stated_spread() -> None:
 
 
 def test_small_displacement_counts_where_tables_hardly_vary() -> None:
-    """A thing that moves by 15 cm is found if the tables of its layout differ by 1 cm only."""
     from deixis.perception.scene import Scene
     from deixis.reasoning.comparison.explanation import explain
     from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED

@@ -57,7 +57,6 @@ def test_missing_and_extra_things_are_told_apart() -> None:
 
 
 def test_displaced_thing_usually_keeps_its_direction() -> None:
-    """A thing that lies askew is turned in its place rather than displaced, as far as the facts allow both."""
     table = evidence(LOOKS, [0, 1, 2], turned=1)
     table.tables[0, 3, :], table.tables[0, :, 3] = 0.0, 0.0  # nothing holds of the straightened thing
     costs = replace(table, odds=MistakeOdds(displaced=-3.4, turned=-4.0))

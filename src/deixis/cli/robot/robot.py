@@ -83,7 +83,8 @@ def run(
 ) -> None:
     """Run the robot on a story until it ends, and print what it sees, hears, says and learns.
 
-    In a terminal, type to talk to it: names, layouts and questions.
+    In a terminal, type to talk to it: names, layouts and questions. The robot keeps what it learns in the memory, which
+    the first line names.
     """
     from deixis.memory.on_demand import default_memory
     from deixis.plots.figure import require_picture
@@ -108,7 +109,8 @@ def run(
         if not view and not as_json:
             print_line(line)
 
-    with live_robot(memory or default_memory(), settings, report, processes) as robot:
+    place = memory or default_memory()
+    with live_robot(place, settings, report, processes) as robot:
         if experience is not None:
             robot.record(experience)
         typing = threading.Thread(target=_listen, args=(robot, report), name="typed words", daemon=True)
@@ -127,6 +129,7 @@ def run(
                 typing.join()
                 robot.answered()
         answer = {
+            "memory": str(place),
             "layout": robot.layout(),
             "things": [
                 {"id": thing.id, "name": thing.name, "probability": round(thing.probability, 4), "since": thing.since}

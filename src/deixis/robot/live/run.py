@@ -222,7 +222,8 @@ def live_robot(
     story
         What it looks at.
     report
-        Called with a line for everything that is said and noticed, from any thread.
+        Called with a line that names the memory, and then with a line for everything that is said and noticed, from any
+        thread.
     processes
         True to run each module in a process of its own.
 
@@ -233,6 +234,7 @@ def live_robot(
     """
     with scratch_folder() as folder, Blackboard.open(memory, create=True) as board:
         board.require_writable()
+        report(f"Memory: {printed_line(str(memory))}")
         _end_earlier(board)
         robot = LiveRobot(board, folder)
 

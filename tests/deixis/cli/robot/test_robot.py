@@ -38,6 +38,12 @@ def test_the_robot_needs_no_standard_input(
     assert (code, err) == (0, "") and "Layout: unknown" in out
 
 
+def test_the_first_line_names_the_memory(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "own"))
+    code, out, _ = deixis("robot", "run", "--from", folder)
+    assert code == 0 and out.splitlines()[0] == f"Memory: {tmp_path / 'own'}"
+
+
 def test_a_story_that_cannot_be_written_is_refused_at_first(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "out").touch()
     code, out, err = deixis("robot", "run", "--from", folder, "--memory", tmp_path / "m", "--story", tmp_path / "out")
