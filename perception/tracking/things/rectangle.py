@@ -41,7 +41,7 @@ def is_rectangular(points: NDArray[np.float64], box: OrientedBox) -> bool:
     if box.extents[2] > MAX_HEIGHT or sides.min() < 2 * STEP or sides.max() > MAX_ELONGATION * sides.min():
         return False
     own = ((points - np.array(box.centre)) @ turned_axes(box.yaw).T)[:, :2]
-    from_corner = [np.abs(own - (x, y) * sides / 2).max(axis=1).min() for x in (-1, 1) for y in (-1, 1)]
+    from_corner = [np.abs(own - np.array([x, y]) * sides / 2).max(axis=1).min() for x in (-1, 1) for y in (-1, 1)]
     if sum(away < 2 * EDGE for away in from_corner) >= MIN_CORNERS:
         return True
     for axis in (0, 1):
