@@ -54,7 +54,10 @@ def evenly_dense(view: View, settings: DetectionSettings) -> View:
     away = np.linalg.norm(view.points[few] - view.pose.eye, axis=1)
     usual = _usual(spacing, spacing, limits)
     angle = spacing / np.maximum(away, 1e-6)
-    ratios = [usual / max(_dense(spacing, limits), 1e-9), _usual(angle, spacing, limits) / max(_dense(angle, limits), 1e-9)]
+    ratios = [
+        usual / max(_dense(spacing, limits), 1e-9),
+        _usual(angle, spacing, limits) / max(_dense(angle, limits), 1e-9),
+    ]
     if min(ratios) < limits.min_ratio:
         return view
     side = min(usual / limits.thinned_ratio, limits.max_cell)

@@ -142,8 +142,7 @@ class PlaneSettings(_Thresholds):
     """Metres inside its outline at which points are above or below a plane: those nearer are often the edge of the
     table. Tested by test_the_edge_of_a_table_does_not_stand_on_its_underside."""
     below_ratio: float = 1.5
-    """Tolerances below a plane at which a point is below it. Tested by
-    test_a_bar_across_the_table_is_not_the_table."""
+    """Tolerances below a plane at which a point is below it. No scene or test tried depends on it."""
     min_standing_share: float = 0.002
     """Fraction of all points that must stand on a plane that is not a floor: some objects, even few. Tested by
     test_a_table_with_few_objects_is_preferred_to_a_larger_floor, and
@@ -218,7 +217,7 @@ class ViewpointSettings(_Thresholds):
 class DensitySettings(_Thresholds):
     """Thinning of bare points that are far denser on some surfaces than on others."""
 
-    sample_size: int = 10_000
+    sample_size: int = 3_000
     """Number of points around which the spacing is measured. No scene or test tried depends on it."""
     neighbours: int = 4
     """Number of nearest points that give the spacing: those beside a point of a grid. No scene or test tried depends on
