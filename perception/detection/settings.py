@@ -87,8 +87,9 @@ class ScaleSettings(_Thresholds):
     """Fraction of the points of a standing object that must be so far inside; an adjoining face has hardly any. Tested
     by test_the_kind_of_a_cloud_is_reported."""
     min_rim_share: float = 0.7
-    """Area of a supposed object on a face relative to that of the face, and share of the directions in which something
-    rises at the outline of the face, above which it is the rim of the face, or its other side, as of a tray. Tested by test_the_rim_of_a_tray_is_not_an_object_on_a_table."""
+    """Area of a supposed object on a face relative to that of the face, above which it is the rim of the face, or its
+    other side, as of a tray; also the share of the directions in which something rises at the outline of a tray. Tested
+    by test_the_rim_of_a_tray_is_not_an_object_on_a_table, test_a_flat_thing_without_a_table_is_one_object."""
     min_table_share: float = 0.12
     """Fraction of the points that must be on the table or its objects; below it, the cloud shows a room. No scene or
     test tried depends on it."""

@@ -19,8 +19,9 @@ from deixis.perception.detection.settings import DetectionSettings, HeightSettin
 class Raised:
     """Points above the table, and the noise of their heights.
 
-    ``above`` (n,) marks the points that may be objects, ``too_high`` (n,) those above the reach. ``noise`` is the standard deviation of one height, ``averaged`` that of a mean
-    over neighbours, both in metres at one metre from the sensor.
+    ``above`` (n,) marks the points that may be objects, ``too_high`` (n,) those above the reach. ``noise`` is the
+    standard deviation of one height, ``averaged`` that of a mean over neighbours, both in metres at one metre from the
+    sensor.
     """
 
     above: NDArray[np.bool_]
