@@ -196,7 +196,7 @@ def _print_curves(tables: list[tuple[FitEvidence, bool]], images: list[Photograp
         evidence = [one for pair in learned for one in pair]
         powers = likeliest_powers(evidence, np.tile([True, False], len(learned)))
         for i in test.tolist():
-            scores[i] = [powers @ (one.facts, -one.chance, one.kinds) for one in images[i].evidence]
+            scores[i] = [powers @ one.terms for one in images[i].evidence]
     print(f"photographs, cross-validated: {curve(scores[:, 0], scores[:, 1])}")
     fits = np.array([[one.fits for one in pair.found] for pair in images])
     print(f"photographs, by `fits`: {curve(fits[:, 0], fits[:, 1])}")

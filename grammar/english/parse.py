@@ -35,6 +35,7 @@ from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_nouns
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.relation_words import prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.grammar.errors import ScriptTimeError
@@ -112,6 +113,10 @@ def parse_english(
             found.append(_sentence(text, place, part, nouns, () if raw.step is None else lead))
             if raw.step is None:
                 lead = _place_of_list(text, place, part, nouns, found[-1])
+            if found[-1].heading:
+                named = _sentence(text, replace(place, heading=False), part, nouns, ())
+                found[-1] = replace(found[-1], place=lead or _place_of_list(text, place, part, nouns, named, True))
+                lead = lead or (found[-1].place if part[0].norm in prepositions() else ())
     return tuple(found)
 
 
@@ -120,10 +125,13 @@ def _late(found: Sequence[Sentence]) -> str:
 
 
 def _place_of_list(
-    text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, sentence: Sentence
+    text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, sentence: Sentence, titles: bool = False
 ) -> tuple[Predicate, ...]:
-    """Return the place that a line before a list gives to its items: *On the left:*, *Top drawer:*."""
-    ends = words[-1].norm == ":" or sentence.heading
+    """Return the place that a line before a list gives to its items: *On the left:*, *Top drawer:*.
+
+    With ``titles`` the line is a heading, which has no colon.
+    """
+    ends = words[-1].norm == ":" or sentence.heading or titles
     if sentence.heading and words[-1].norm == ":":
         sentence = _sentence(text, replace(raw, heading=False), words, nouns, ())
     whole = sentence.fragment is None and len(sentence.clauses) == 1 and sentence.clauses[0].subject is None

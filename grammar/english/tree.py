@@ -196,6 +196,7 @@ class Sentence:
     viewpoint: Viewpoint | None = None  # 'facing the bed, …', 'from the door, …': holds of the whole sentence
     guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the fragment was parsed
     contested: frozenset[Span] = frozenset()  # predicates that not all good readings have (readings.py)
+    place: tuple[Predicate, ...] = ()  # place that a heading names: 'On the top shelf', 'Lower shelves'
 
     @property
     def understood(self) -> float:

@@ -20,9 +20,18 @@ SMART_QUOTES = "“”„‟«»‘’"
 QUOTE_HINT = "if it belongs to a name, quote the name"
 NEARNESS_WORDS = {"nearer", "next", "close", "closer", "besides", "far", "farther"}
 NEARNESS_HINT = "say 'near', 'next to' or 'far from' for nearness"
+UNSURE_HINT = "what is not sure is said with 'perhaps': fork perhaps left of plate"
+FACT_HINT = "a statement says how the table is laid: fork left of plate"
 DENIAL_HINT = "a denial is said with 'not': fork not left of plate"
 SEPARATOR_HINT = "';' separates two statements on one line"
 ONE_QUALITY_HINT = "an object has one kind and one colour: state the main one"
+HINTS = {
+    **dict.fromkeys(NEARNESS_WORDS, NEARNESS_HINT),
+    **dict.fromkeys(("may", "might", "could", "would"), UNSURE_HINT),
+    **dict.fromkeys(("must", "should", "will", "was", "were", "been", "had"), FACT_HINT),
+    **dict.fromkeys(DENIALS, DENIAL_HINT),
+}
+"""Hints for words where a relation is expected."""
 NAMES = ("NAME", "STRING")
 RESERVED = ("RELATION", "HEDGE", "IS", "VERB", "NOT", "OPTIONAL")
 QUALIFIERS = ("NOT", "OPTIONAL", "HEDGE")
@@ -167,10 +176,15 @@ def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Dr
         else:
             message = f"'{shown}' is not expected here"
         return StatementError(source_of(token), message, naming_hint(tokens, at))
-    if token.casefold() in DENIALS:
-        return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", DENIAL_HINT)
+    hint = HINTS.get(token.casefold())
+    if hint == DENIAL_HINT or (hint is not None and hint != NEARNESS_HINT and "RELATION" in accepts):
+        return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", hint)
+    if "RELATION" in accepts and (verb := _relation_of_verb(token, draft)) is not None:
+        return StatementError(source_of(token), f"expected a relation, not '{shown}'", f"did you mean '{verb}'?", verb)
     if "RELATION" in accepts and (meant := _nearest_relation(tokens, at, draft)) is not None:
         words_given, where, phrase = meant
+        if hint is not None and not phrase.startswith(token.casefold()):
+            return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", hint)  # 'close by'
         return StatementError(where, f"expected a relation, not '{words_given}'", f"did you mean '{phrase}'?", phrase)
     if token.type in NAMES:
         return _unexpected_token(tokens, at, accepts)
@@ -178,10 +192,16 @@ def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Dr
         if "RELATION" not in accepts:
             return _unexpected_token(tokens, at, accepts)
         parts = [str(t) for t in tokens[at - 1 : at + 2] if t.type in ("NAME", "FUNCTION")]
-        hint = f"if it belongs to a name, write {shortened('_'.join(parts))} or quote the name"
+        hint = hint or f"if it belongs to a name, write {shortened('_'.join(parts))} or quote the name"
         return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", hint)
-    nearness = NEARNESS_HINT if str(token).casefold() in NEARNESS_WORDS else None
-    return StatementError(source_of(token), _no_bare_name(shown), nearness)
+    return StatementError(source_of(token), _no_bare_name(shown), hint)
+
+
+def _relation_of_verb(token: Token, draft: Draft) -> str | None:
+    """Return the relation with the participle of a verb: *touching* for *touches*, *facing* for *faces*."""
+    word = token.casefold()
+    forms = (f"{stem}ing" for stem in (word.removesuffix("s"), word.removesuffix("es"))) if word.endswith("s") else ()
+    return next((draft.phrases[form] for form in forms if form in draft.phrases), None)
 
 
 def _unknown_relation(name: Token, draft: Draft) -> StatementError:

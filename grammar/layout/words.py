@@ -45,6 +45,7 @@ leant looks moves overlaps occupies points precedes remains seems shows stays su
 """
 _DENIALS = """
 cannot can't couldn't don't doesn't didn't isn't aren't wasn't weren't won't wouldn't shouldn't mustn't
+couldnt dont doesnt didnt isnt arent wasnt werent wouldnt shouldnt mustnt
 """
 DENIALS = frozenset(_DENIALS.split())
 _DEGREES = "least less more most"  # "left most" is one word: leftmost

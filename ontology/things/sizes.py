@@ -34,7 +34,7 @@ class Extent:
     greatest: float
 
     def __str__(self) -> str:
-        return f"{100 * self.least:g} to {100 * self.greatest:g} cm"
+        return f"{100 * self.least:.3g} to {100 * self.greatest:.3g} cm"
 
     def admits(self, metres: float, tolerance: float = 0.0) -> bool:
         """Return whether a length lies in the range.

@@ -12,6 +12,9 @@ under a camera that moves; its own state is ``SAME``."""
 
 STATES = 7
 
+VOID = 2
+"""Distance in pixels within which a pixel must have a depth for one without a depth to be noise."""
+
 FOLLOWING = np.float32(0.3)
 """Share of a new measurement in the last depth of a pixel, under a camera that moves."""
 
@@ -225,7 +228,8 @@ def scores(  # type: ignore[no-untyped-def]
 
     A point of the thing that is at the measured depth scores up to 1, by its distance and its colour. A point behind
     the measured surface may be hidden: it scores ``hidden``. A point in front of it would be seen and is not: it scores
-    ``empty``. A surface that belongs to something else (``taken``) does not count as the thing's.
+    ``empty``. A surface that belongs to something else (``taken``) does not count as the thing's. A pixel without a
+    depth may be noise (``hidden``), but where none around it has one, nothing is near enough to be measured.
 
     Parameters
     ----------
@@ -268,7 +272,11 @@ def scores(  # type: ignore[no-untyped-def]
             seen[p, 2] += 1
             measured = depth[m, n]
             if measured <= 0:
-                total += hidden
+                if _is_void(depth, m, n):
+                    seen[p, 1] += 1
+                    total += 0.5 * empty
+                else:
+                    total += hidden
                 continue
             sigma = max(tolerance, noise * measured * measured)
             apart = measured - d
@@ -300,6 +308,17 @@ def scores(  # type: ignore[no-untyped-def]
                 seen[p, 0] += 1
         found[p] = total / max(len(points), 1)
     return found, seen
+
+
+@njit(cache=True, nogil=True)
+def _is_void(depth, row, column):  # type: ignore[no-untyped-def]
+    """Return True if neither a pixel nor any near it has a depth."""
+    rows, columns = depth.shape
+    for m in range(max(row - VOID, 0), min(row + VOID + 1, rows)):
+        for n in range(max(column - VOID, 0), min(column + VOID + 1, columns)):
+            if depth[m, n] > 0:
+                return False
+    return True
 
 
 @njit(cache=True, nogil=True)

@@ -42,6 +42,9 @@ class Chunker(FixedPhraseChunker):
                 self.chunks.append(Chunk("NP", at, at, you, (start, start)))
                 chunk.type = "VERB"
             self.chunks.append(chunk)
+            if self._object_left_out:
+                here, self._object_left_out = (chunk.span[1], chunk.span[1]), False
+                self.chunks.append(Chunk("NP", chunk.end, chunk.end, NounPhrase(here, pronoun="object"), here))
             at = chunk.end
             if self._denied_be is not None and chunk.type == "NP" and self.norms[at] not in ("of", "and", "or"):
                 self.chunks.append(Chunk("BE", at, at, self._denied_be, (chunk.span[1], chunk.span[1])))
@@ -134,6 +137,9 @@ class Chunker(FixedPhraseChunker):
         if self.norms[at + 1] in ("quarters", "quarter", "thirds", "third") and self.norms[at + 2] in _HALF_STATES:
             span = self.words[at].start, self.words[at + 2].end
             return Chunk("ADJP", at, at + 3, (Adjective(f"partly {self.norms[at + 2]}", "state", Degree.PLAIN, span),))
+        if self.norms[at].endswith(("-quarters", "-thirds")) and self.norms[at + 1] in _HALF_STATES:
+            span = self.words[at].start, self.words[at + 1].end
+            return Chunk("ADJP", at, at + 2, (Adjective(f"partly {self.norms[at + 1]}", "state", Degree.PLAIN, span),))
         if self.norms[at] in ("missing", "absent") and self._previous() == "BE":
             span = self.words[at].start, self.words[at].end
             return Chunk("ADJP", at, at + 1, (Adjective("missing", "state", Degree.PLAIN, span),))

@@ -99,7 +99,7 @@ class JointChunker(VerbChunker):
         if (
             norm in ("neither", "either", "both")
             and not (norm == "both" and previous == "PUT")
-            and (after in prepositions() or self._match(at + 1))
+            and (after in prepositions() or self._match(at + 1) or (previous == "BE" and is_adjective(after)))
         ):
             return Chunk("NOT" if norm == "neither" else "ADVERB", at, at + 1, norm)
         if norm == "of":

@@ -318,7 +318,8 @@ class FixedPhraseChunker(JointChunker):
             if wished is not None:
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
-                return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
+                alone = alone and not placed and self._previous() != "SUB"  # 'if you want honey' is a condition
+                return Chunk("CUT" if alone else "ADVERB", at, wished, "you want")
         opens = norm in _STEPS and not norm.endswith("ly") and self.norms[at + 1] == ","
         opens = opens and self._previous() in ("", "CUT")
         if opens and (self._subject_or_command(at + 2) or self.norms[at + 2] in PUT_VERBS | prepositions().keys()):
@@ -673,7 +674,7 @@ _RECOMMENDING = frozenset({"recommend"})
 """Verbs of writers whose *-ing* form is a command, unlike that of *suggest*: *we recommend placing it there*."""
 _RECOMMENDED_SO = word_set("do would 'd also highly strongly always really")
 """Words between a writer and what is recommended."""
-_TRYING = word_set("consider try recommend")
+_TRYING = word_set("consider try recommend begin start continue")
 """Verbs of commands whose *-ing* form is the command: *try placing it there*."""
 
 _USERS = word_set("you we they i people guests everyone")

@@ -45,6 +45,7 @@ class ModifierFinder(NounFinder):
             described = is_adjective(norms[i + 1]) or (
                 determined and norm not in ADVERBS and norm not in HEDGES and self._nounish(i + 1)
             )  # 'an oily rag'
+            described = described or (norms[i + 1].endswith("ed") and i == at and norms[i - 1] in prepositions())
             if norm.endswith("ly") and norm not in self._adjectives and described and not self._nouns.knows(norm):
                 i += 1
                 continue
@@ -140,7 +141,7 @@ class ModifierFinder(NounFinder):
 
     def _modifies(self, at: int, determined: bool) -> bool:
         norm, after = self.norms[at], self.norms[at + 1]
-        if norm in _TOOL_ADJECTIVES and not self._nounish(at + 1) and after not in ("one", "ones", "than"):
+        if norm in _TOOL_ADJECTIVES and not self._nounish(at + 1) and after not in ("one", "ones", "than", "of"):
             return False
         if norm[:1].isdigit() and "-" in norm:
             return self._nounish(at + 1)
@@ -245,6 +246,8 @@ class ModifierFinder(NounFinder):
             return True
         if not self._nounish(at + 1) and after not in ("one", "ones"):
             return False
+        if at > 1 and norm.endswith("ed") and self.norms[at - 1].endswith("ly") and self.norms[at - 2] in prepositions():
+            return True  # 'in loosely tied bags'
         if form is not None and form.form in ("past", "participle"):
             return (determined and norm not in ("set",)) or (
                 form.form == "past" and norm.endswith("ed") and self._free(at)

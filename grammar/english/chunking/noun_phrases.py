@@ -270,6 +270,8 @@ class NounChunker(ModifierFinder):
                     break
             if nouns and f"{norm} {norms[i + 1]} {norms[i + 2]}" in prepositions() and norm in ("half", "full"):
                 break  # 'a pan half full of water'
+            if nouns and norm.endswith(("-quarters", "-thirds")):
+                break  # 'a jug three-quarters full'
             if nouns and norm in ("face", "bottom") and norms[i + 1] in ("up", "down"):
                 break  # 'the card face down'
             letter = self._letter(i)

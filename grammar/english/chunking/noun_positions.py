@@ -274,6 +274,9 @@ class NounFinder:
         if norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at) or self.is_participle_of_one(at):
             return True
         after_preposition = at > 0 and (self.norms[at - 1] == "of" or self.norms[at - 1] in prepositions())
+        described = norm.endswith("ly") and (is_adjective(self.norms[at + 1]) or self.norms[at + 1].endswith("ed"))
+        if after_preposition and described and norm not in HEDGES:
+            return self._continues(at + 2)  # 'in loosely tied plastic bags', 'on easily accessible shelves'
         shaped = norm.endswith("ed") and len(norm) > 4 and self._nouns.knows(self.norms[at + 1])
         ordered = shaped and self.follows_command(at)
         return (after_preposition or ordered) and shaped and self.is_noun(at + 1)  # 'with crumpled paper'
@@ -386,6 +389,7 @@ class NounFinder:
             or (before in ORDINALS and (form is None or form.form == "base"))
             or (before == "'s" and self.norms[back - 1] not in PRONOUNS)
             or (is_adjective(before) and (form is None or form.form != "s" or before not in _PREDICATIVE))
+            or self._is_done(back)
         )
         if norm == "can" or norm in ("will", "may", "need", "might"):
             if norm == "can" and after in _BETWEEN_MODAL_AND_VERB:  # 'the napkins can either be placed there'
@@ -552,6 +556,8 @@ class NounFinder:
             if self._nouns.knows(before):  # 'the glass stands above …'
                 return False
             two_before = self.norms[back - 1] if back else ""
+            if back == 1 and two_before in PUT_VERBS | FIND_VERBS:
+                return True  # 'use top shelves for glasses'
             return two_before in DETERMINERS or two_before in POSSESSIVES or is_adjective(two_before)
         if (after in IS_FORMS and after != "'s") or (after in MODALS and after != "can"):
             return True
@@ -587,6 +593,8 @@ class NounFinder:
                 return not self._predicate_follows(at) or at == 0 or before in (".", ";", ":")
             if norm in NAMED_LIKE_THINGS:
                 return not self.commands(at) or after == "of"
+            if norm == "face" and self.turns(at):
+                return False
             imperative = norm in PUT_VERBS or norm in FIND_VERBS
             return (
                 not self.starts(at + 1)
@@ -622,18 +630,45 @@ class NounFinder:
                 "turn",
                 "on",
             ]
-        if is_adjective(self.norms[at]):
-            return False  # 'top box', 'lower shelf'
+        if is_adjective(self.norms[at]) or self._nouns.knows(f"{self.norms[at]} {self.norms[after]}"):
+            return False  # 'top box', 'lower shelf', 'tape measure'
         adverbs = all(norm in ADVERBS or norm in (",", "next", "first", "then") for norm in self.norms[:at])
-        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]) and not adverbs:
-            return False  # but 'also, pack heavy items at the bottom'
+        placed = at > 1 and self.norms[0] in prepositions() and self.norms.index(",") == at - 1
+        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]) and not adverbs | placed:
+            return False  # but 'also, pack heavy items at the bottom', 'on the shelf, stack plates and bowls in piles'
         rest = self.norms[after : after + 12]
+        relative = next((i for i, norm in enumerate(rest) if i and norm in _SUBORDINATE), len(rest))
+        rest = rest[:relative]
         ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
         if rest[ends : ends + 1] == [","] and "and" in rest[ends:]:
             ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS and norm != ","), len(rest))
         rest, mark = rest[:ends], rest[ends : ends + 1]  # 'store milk, eggs and butter in the door'
         states = any(norm in IS_FORMS or norm in MODALS or self._stands(after + i) for i, norm in enumerate(rest))
-        return mark != [":"] and not states and any(norm in prepositions() for norm in rest[1:])
+        named = placed or any(norm in prepositions() for norm in rest[1:])
+        return mark != [":"] and not states and named
+
+    def _is_done(self, at: int) -> bool:
+        """Return True for a participle between a determiner and a noun: *provided* of *the provided screws*."""
+        form = self._verbs.get(self.norms[at])
+        determined = at > 0 and (self.norms[at - 1] in DETERMINERS or self.norms[at - 1] in POSSESSIVES)
+        return determined and form is not None and form.form in ("past", "participle") and form.lemma != "leave"
+
+    def turns(self, at: int) -> bool:
+        """Return True for *face* before a thing and a direction: *face the blades toward the plate*.
+
+        Parameters
+        ----------
+        at
+            Index of the verb, where a command can begin.
+
+        Returns
+        -------
+        bool
+            False where no direction follows in the clause.
+        """
+        rest = self.norms[at + 1 : at + 8]
+        ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
+        return self.starts(at + 1) and not _TOWARD.isdisjoint(rest[1:ends])
 
     def _stands(self, at: int) -> bool:
         """Return True for the verb of a statement: *cards stand behind …*."""
@@ -670,7 +705,7 @@ class NounFinder:
             return False
         return (
             at == 0 or before in self._closed or not before[0].isalpha() or is_adjective(before) or before in ORDINALS
-            or before in NUMBERS
+            or before in NUMBERS or self.follows_command(at)
         )  # fmt: skip
 
     def _takes_preposition(self, after: str) -> bool:
@@ -930,6 +965,12 @@ _NEVER_NOUNS = word_set(
 NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")
 
 _CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", "?", ""})
+
+_SUBORDINATE = frozenset({"that", "which", "who", "so", "because", "since", "while", "although", "when", "until"})
+"""Words that begin a clause with a verb of its own."""
+
+_TOWARD = frozenset({"toward", "towards", "away", "inward", "inwards", "outward", "outwards"})
+"""Words of the direction of what is turned."""
 
 _STAYING = frozenset({"stay", "remain", "lie", "sit", "hang", "belong", "kneel"})
 

@@ -83,7 +83,8 @@ def _agrees(noun: str, verb: str, form: str | bool, nouns: KnownNouns) -> bool:
     if not noun[:1].isalpha() or (is_known(noun) and not nouns.knows(noun)):
         return False
     plural = nouns.singular(noun)[1]
-    if form == "s" or (form is False and verb.endswith("s") and not verb.endswith("ss") and not is_known(verb)):
+    unknown = form is False and not is_known(verb) and not nouns.knows(verb)
+    if form == "s" or (unknown and verb.endswith("s") and not verb.endswith("ss")):
         return not plural
     return (form == "base" and plural) or form == "past"
 

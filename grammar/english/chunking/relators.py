@@ -89,6 +89,7 @@ class RelatorChunker:
         self._denied: str | None = None  # modal of a denial that stands before its subject
         self._denied_be: VerbGroup | None = None  # 'by no means is the cup …': *is* goes after the subject
         self._made: int | None = None  # index of the verb of 'let the ribbon hang …'
+        self._object_left_out = False  # True after 'place' of 'cut it and place in the box'
         self._relations, self._alone, self._verbs = _preposition_phrases(), _alone_phrases(), verb_forms()
 
     def _previous(self) -> str:
@@ -155,8 +156,11 @@ class RelatorChunker:
             and self.norms[at + 1] not in ("to", "of", "by")
         ):
             return None
+        led = at > 0 and self.norms[at - 1] in ("on", "in", "to", "at", "into", "onto")
+        if self.norms[at] in ("inside", "outside") and led and self.nouns.adjective_before_noun(at):
+            return None  # 'on outside pouches'
         begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
-        if self.norms[at] == "close" and begins and self.nouns.is_determiner(at + 1):
+        if self.norms[at] == "close" and begins and (self.nouns.is_determiner(at + 1) or self.norms[at + 1] == "and"):
             return None  # 'close the lid'
         alone = self._alone.longest(self.norms, at)
         if alone is not None and alone[1].phrase.startswith("far ") and PLACE_NOUNS.get(self.norms[alone[0]]) in _SPOTS:
@@ -201,6 +205,8 @@ class RelatorChunker:
                     return (end, "PREP", preposition) if takes_object else None
                 shorter = self._alone.longest(self.norms, at)
                 stranded = any(chunk.type == "REL" for chunk in self.chunks) or self.norms[end] in ("and", "or", ",")
+                last = [chunk.type for chunk in self.chunks[-3:]]
+                stranded = stranded or (last[:2] == ["NP", "NP"] and last[2:3] in (["BE"], ["VERB"]))
                 stands_alone = end > at + 1 or self.norms[at] in ("near", "against", "beneath", "alongside", "beside")
                 if (
                     shorter is None

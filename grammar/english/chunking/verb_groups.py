@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.verbs import (
     FIND_VERBS,
     LINKING_VERBS,
     NAMED_LIKE_THINGS,
+    PLACING_VERBS,
     PUT_VERBS,
     REPORTS,
     SAYING,
@@ -32,6 +33,10 @@ PUT_ONLY = word_set(
     "put place keep leave set lay use see find position have cover stack fold roll store fill top flank screw bolt"
 )
 
+
+_COMMANDS = frozenset({"PUT", "DO", "FIND", "GO"})
+_NAMED_OR_PASSIVE = frozenset({"set", "laid", "hang", "leave", "stack", "mount", "fix"})
+"""Words that begin a note or a participle as well: *set on the hill, …*, *stack on the left*."""
 
 _FALLING_OVER = frozenset({"fall", "topple", "tip", "knock", "keel"})
 """Verbs of which *over* is a part."""
@@ -58,8 +63,13 @@ class VerbChunker(RelatorChunker):
                 return self._finite(at, at + 2, group)  # 'it must hang on the rail and not lie on the table'
         if self._previous() in ("AND", "OR") and (shared := self._second_verb(at)) is not None:
             return shared
-        i, adverbs, modal, positive, past = at, [], None, True, False
         begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
+        if self.norms[at] == "only" and begins and self.norms[at + 1] in PUT_VERBS and self._is_base(at + 1):
+            return Chunk("ADVERB", at, at + 1, "only")  # 'only keep jars on the door'
+        if self._leaves_object_out(at):
+            form, self._object_left_out = self._verbs[self.norms[at]], True
+            return Chunk("PUT", at, at + 1, VerbGroup(form.lemma, form.kind, "base"))
+        i, adverbs, modal, positive, past = at, [], None, True, False
         while (self.norms[i] in ADVERBS | HEDGES and self.norms[i] != "about") or self.norms[i] == "never":
             if begins and self.norms[i] == "there" and self.norms[i + 1] in IS_FORMS | MODALS.keys():
                 return None  # 'perhaps there is a spoon'
@@ -160,6 +170,20 @@ class VerbChunker(RelatorChunker):
         return Chunk(
             "VERB", at, at + 1, VerbGroup(form.lemma, form.kind, "base", last.value.modal, last.value.positive)
         )
+
+    def _leaves_object_out(self, at: int) -> bool:
+        """Return True for a command before a place, whose object is named before: *cut it and place in the box*."""
+        before = next((chunk.type for chunk in reversed(self.chunks) if chunk.type != "ADVERB"), "")
+        norm, begins = self.norms[at], before in JOINT_TYPES | {""}
+        if norm not in PLACING_VERBS or not begins or self.norms[at + 1] in ("of", "to", "for", "with", "from", "by"):
+            return False
+        placed = self._predicate_after(at) and self._match(at + 1) is not None
+        if not placed and self._measure(at + 1) is None:
+            return False
+        if before not in ("", "CUT"):
+            last = next((c for c in reversed(self.chunks) if c.type in FINITE | _COMMANDS | {"CUT"}), None)
+            return last is not None and last.type in _COMMANDS
+        return norm not in _NAMED_OR_PASSIVE and not IS_FORMS.intersection(self.norms[at:])
 
     def _is_base(self, at: int) -> bool:
         form = self._verbs.get(self.norms[at])
@@ -283,6 +307,9 @@ class VerbChunker(RelatorChunker):
             return None
         if norm == "left":
             return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past", past=True))
+        taken = end + (self.norms[end] in ("up", "out", "off", "open"))
+        if norm in ("cut", "shut", "split") and self._previous() in JOINT_TYPES | {""} and self.nouns.is_determiner(taken):
+            return Chunk("DO", at, taken, _with(group, norm, "other", "base"))
         told = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["BE"]
         if norm in ("put", "set", "spread") and told and self._predicate_after(i):
             return Chunk("PART", at, end, _with(group, norm, "posture", "participle"))  # 'are commonly put on it'
@@ -429,6 +456,8 @@ class VerbChunker(RelatorChunker):
                 return Chunk(kind, at, end, found)
             if imperative and norm in ("look", "search") and self.norms[end] == "for":
                 return Chunk("FIND", at, end + 1, found)
+            if imperative and norm == "face" and self.nouns.turns(i):
+                return Chunk("PUT", at, end, _with(group, "turn", "posture", "base"))
             if imperative and norm in FACE_VERBS and not subject_is_you:
                 if norm in ("look", "turn") and self.norms[end] in ("at", "to", "toward", "towards"):
                     end += 1
@@ -555,6 +584,7 @@ class VerbChunker(RelatorChunker):
         if (
             len(norm) < 5
             or not norm.endswith(("ed", "ing"))
+            or norm.endswith("eed")
             or previous not in ("NP", "BE", "COMMA", "AND", "REL", "NOT")
             or norm in PRONOUNS
         ):

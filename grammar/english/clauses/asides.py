@@ -146,7 +146,7 @@ def compared_quality(chunks: list[Chunk], at: int) -> Run | None:
 
 
 def examples(chunks: list[Chunk], at: int) -> Run | None:
-    """Find examples of the things before: *small tools, such as files and awls, …*, *items like keys and coins …*.
+    """Find examples of the things before: *small tools, such as files and awls, …*, *tins including cans …*.
 
     Parameters
     ----------
@@ -163,10 +163,12 @@ def examples(chunks: list[Chunk], at: int) -> Run | None:
     apart = type_at(chunks, at) == "COMMA"
     first = at + apart
     before = chunks[at - 1] if at else None
-    if before is None or before.type != "NP" or type_at(chunks, first) != "PREP":
+    group = chunks[first].value if type_at(chunks, first) == "TPART" else None
+    including = isinstance(group, VerbGroup) and group.lemma == "include" and group.form == "ing"
+    if before is None or before.type != "NP" or not (including or type_at(chunks, first) == "PREP"):
         return None
-    word = chunks[first].value.preposition.phrase
-    if not before.value.plural and not (word == "such as" and apart):
+    word = "such as" if including else chunks[first].value.preposition.phrase
+    if not before.value.plural and not (word == "such as" and (apart or including)):
         return None
     general = last_word(before.value.head) in GENERAL
     if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in _COMMANDS))):
@@ -347,6 +349,41 @@ def agent(chunks: list[Chunk], at: int) -> Run | None:
     return end, None
 
 
+def naming(chunks: list[Chunk], at: int) -> Run | None:
+    """Find another name of a thing: *a large plate, known as a charger, …*, *a plate called a side plate …*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+    at
+        Index of the participle, or of the comma before it.
+
+    Returns
+    -------
+    tuple or None
+        End of the name, with the comma after one in commas, and None; None if no name follows.
+    """
+    apart = type_at(chunks, at) == "COMMA"
+    first = at + apart
+    if type_at(chunks, at - 1) != "NP" or type_at(chunks, first) not in ("PART", "TPART"):
+        return None
+    group = chunks[first].value
+    if not isinstance(group, VerbGroup) or group.lemma not in _NAMING or group.form == "ing":
+        return None
+    named = first + 1
+    while type_at(chunks, named) in ("PREP", "UNKNOWN", "ADVERB") and named < first + 3:
+        named += 1
+    if type_at(chunks, named) != "NP" or (named > first + 1) != (group.lemma in ("know", "refer")):
+        return None
+    _leave_out(chunks[first : named + 1], "another name of a thing does not say where it is")
+    return named + 1 + (apart and type_at(chunks, named + 1) == "COMMA"), None
+
+
+_NAMING = frozenset({"know", "call", "refer", "name", "term", "dub"})
+"""Verbs before another name of a thing."""
+
+
 def omission(chunks: list[Chunk], at: int) -> Run | None:
     """Find what is not done: *slide the poles in without attaching them to the base*.
 
@@ -440,6 +477,6 @@ _STEMS = _CAUSING | {lemma.removesuffix("e") for lemma in _CAUSING}
 
 FINDERS = (
     framing, manner, consequence, compared_quality, examples, side_up, first_of_two_commands, used_things, followers,
-    agent, omission, layer, replacement,
+    agent, naming, omission, layer, replacement,
 )  # fmt: skip
 """Finders of phrases beside the statement, in the order in which they are used."""

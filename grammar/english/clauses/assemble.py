@@ -10,11 +10,13 @@ from deixis.grammar.english.clauses.build import flat, viewpoint_of
 from deixis.grammar.english.clauses.built import ALONG_WITH, Built, Noun, Predication, Verb, misunderstood, notes
 from deixis.grammar.english.clauses.joints import Segment
 from deixis.grammar.english.clauses.places import HOURS
+from deixis.grammar.english.clauses.predicates import place_left
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
+from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS, PUT_VERBS, TRANSITIVE_RELATIONS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
@@ -26,6 +28,13 @@ _LAST_OF_ALL = re.compile(r"\b(?:finally|lastly|last\s+of\s+all)\b", re.IGNORECA
 _OWN = re.compile(r"\b(?:his|her)\b", re.IGNORECASE)
 """Owner of a part of the body: *he has a chip on his shoulder*."""
 _FRAMES = frozenset({"facing", "from"})
+_TREATING = word_set(
+    "wash rinse soak clean wipe scrub dry boil fry heat warm reheat bake roast cook cool chill mix beat whisk stir peel"
+    " chop slice shake toast melt"
+)
+"""Commands after which *in* and *under* tell where something is done: *wash the cups in the sink*."""
+_BEING = frozenset({"be", "lie", "stand", "sit", "rest", "lay"})
+"""Verbs before *off* and *out of* that say where a thing is not."""
 _PLACING = frozenset(
     {
         "put", "place", "keep", "leave", "set", "lay", "store", "spread", "position", "move", "return", "transfer",
@@ -210,10 +219,10 @@ class Assembly:
             self._conditional(span, link)
             subject = built.subject
             if subject is not None and subject.phrase.head and subject.phrase.determiner not in ("no", "any"):
-                text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+                text = self._condition_text(span, link)
                 self.supposed.append(Clause(replace(subject.phrase, predicates=()), (), span, condition=text))
             elif _REFERS_BACK.search(self.text, span[1], self.raw.end):  # 'if you use napkins, put them on the plate'
-                text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+                text = self._condition_text(span, link)
                 self.supposed += [
                     Clause(replace(one, predicates=()), (), span, condition=text) for one in self.named[:1]
                 ]
@@ -231,6 +240,8 @@ class Assembly:
             if built.shape == "other" and not group.positive and group.kind == "unknown":
                 misunderstood(span, f"'{group.lemma}' does not say where something is not")
                 return  # 'do not dip the bread in the oil'
+        if built.shape == "other" and subject is not None and built.verbs[0].group.lemma in _TREATING:
+            subject = _without_place_of_act(subject)
         letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]
@@ -430,8 +441,15 @@ class Assembly:
         relation = HOURS.get(hours[0] if len(hours) == 1 or hours[0] % 3 else hours[-1] or 0, "top")
         return replace(predicate, relation=relation, arguments=(self.clock,))
 
+    def _condition_text(self, span: Span, link: str) -> str:
+        """Return the words of a condition from its conjunction on, all of them: *if you want tea*."""
+        start = self.text.casefold().rfind(link, self.raw.start, span[0])
+        written = start >= 0 and not set(self.text[start : span[0]]) & set(",.;:")
+        shown = self.text[start : span[1]] if written else f"{link} {self.text[slice(*span)]}"
+        return " ".join([link, *shown[len(link) :].split()])
+
     def _conditional(self, span: Span, link: str) -> None:
-        text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+        text = self._condition_text(span, link)
         found = notes.get()
         found[:] = [
             note for note in found if not span[0] <= note.span[0] < span[1]
@@ -684,6 +702,8 @@ class Assembly:
             predicates, self.front = [*self.front, *predicates], ()
         if mood is Mood.COMMAND:  # 'with a helper, turn the desk over'
             predicates = [p for p in predicates if p.relation != "with" or any(a.predicates for a in p.arguments)]
+        if group.lemma in _BEING:
+            main = [place_left(predicate) for predicate in main]  # 'the lid is off the pot'
         made, absolute = _absolutes(predicates + main)
         shared = tuple(p for p in made if p.relation != "with" and p.positive)
         if phrase is not None and shared:  # 'the gloves are on the shelf, along with the goggles'
@@ -750,6 +770,19 @@ class Assembly:
         placed = clause.subject is not None and bool(clause.subject.predicates)
         if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
             self.clauses.append(replace(clause, predicates=tuple(kept), guesses=self.guesses | clause.guesses))
+
+
+def _without_place_of_act(noun: Noun) -> Noun:
+    """Return the object of *wash the cups in the sink* without the place where that is done."""
+
+    def bare(phrase: NounPhrase) -> NounPhrase:
+        kept = tuple(p for p in phrase.predicates if p.relation not in ("inside", "under", "above"))
+        for predicate in phrase.predicates:
+            if predicate not in kept:
+                misunderstood(predicate.span, Guess.ACTION.value)
+        return replace(phrase, predicates=kept, members=tuple(map(bare, phrase.members)))
+
+    return replace(noun, phrase=bare(noun.phrase))
 
 
 def _is_plan(group: VerbGroup, agent: NounPhrase) -> bool:
@@ -823,7 +856,8 @@ def _split_frames(predications: tuple[Predication, ...]) -> tuple[tuple[Predicat
     if not nested and not seen_from and not any(p.relation in _FRAMES and p.subject_part is None for p in top):
         return predications, None
     everything = tuple(p for part in predications for p in part.predicates)
-    return (), viewpoint_of(everything)
+    viewpoint = viewpoint_of(everything)
+    return (predications if viewpoint is None else ()), viewpoint  # 'the cup is on the mat, facing left' has none
 
 
 def _joined(first: Viewpoint | None, second: Viewpoint) -> Viewpoint:

@@ -464,6 +464,9 @@ class Builder(Transformer[Any, Built]):
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
         told = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
         measured = last_word(noun.phrase.head).rpartition("-")[2] in _MEASURES  # 'at eye-level'
+        ranked = any(a.dimension in ("position", "rank") for a in noun.phrase.adjectives)
+        if noun.phrase.head == "level" and ranked and relation in ("on", "at", "inside"):
+            measured, relation = False, "on"  # 'on the bottom level'
         if (measured or told) and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             said = tuple(
@@ -542,6 +545,8 @@ class Builder(Transformer[Any, Built]):
             return (*noun.phrase.predicates, *extra)
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
+        bare = noun.phrase.determiner is None and not noun.phrase.plural and bool(noun.phrase.head)
+        idle = idle or (relator.preposition.phrase == "before" and bare and noun.phrase.count is None)
         idle = idle and noun.phrase.owner is None  # 'on display', but 'above your display'
         if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
@@ -556,6 +561,8 @@ class Builder(Transformer[Any, Built]):
         value = None
         if relator.rank is not None:
             value = Adjective("ordinal", "rank", degree, prep.span, rank=relator.rank)
+        noun, again = _of_the_same(noun)
+        extra = (*again, *extra)
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
@@ -856,6 +863,16 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
 
 
+def _of_the_same(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
+    """Separate *on the same plate* from the thing that is there already: *beside the bread, on the same plate*."""
+    phrase = noun.phrase
+    last = phrase.predicates[-1] if phrase.predicates else None
+    if last is None or last.relation not in ("on", "inside") or not any(a.determiner == "same" for a in last.arguments):
+        return noun, ()
+    bare = replace(phrase, predicates=phrase.predicates[:-1], span=(phrase.span[0], last.span[0]))
+    return Noun(bare, noun.extra), (last,)
+
+
 def _is_side(predicate: Predicate) -> bool:
     return predicate.relation in ("left", "right", "top", "bottom") and not predicate.arguments
 
@@ -962,7 +979,7 @@ _FASTENING = word_set(
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
 _SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
 _AMOUNTS = word_set(
-    "layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering heap"
+    "length layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering heap"
     " mound bit amount quantity helping cm mm centimetre centimeter millimetre inch gram g kg ml litre liter"
 )
 """Nouns of an amount, before the substance or the things that are meant."""

@@ -15,6 +15,8 @@ _LOOKING = word_set("look peek peep peer search check open lift")
 """Verbs of a sentence that sends the reader to a place."""
 _SEEING = word_set("see find notice discover spot")
 """Verbs of a sentence that says what is there."""
+_ENDS = frozenset({"COMMA", "CUT", ""})
+"""Types of chunks at which a clause ends, and of the end of a sentence."""
 _NOT_THERE = word_set("facing pointing to at from through")
 """Relations of *look* that do not say where the thing is that one sees."""
 
@@ -36,8 +38,9 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after,
         _with_there_as_being, _with_repeated_predicates, _with_ordinals_apart, _without_clefts,
         _without_clefts_of_places,
-        _with_places_looked_at, _with_exceptions,
-        _with_members_apart, _with_contrasts_at_subjects,
+        _with_places_looked_at, _with_exceptions, _without_verbs_of_comparison, _with_shared_references,
+        _without_order_in_lists, _without_colons_before_verbs,
+        _with_members_apart, _with_contrasts_at_subjects, _with_listed_places_apart,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -95,12 +98,40 @@ def _listed(chunks: list[Chunk], at: int) -> tuple[list[Chunk], int]:
     return (found, i) if joined else ([], at)
 
 
+def _with_listed_places_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *jars on the top shelf, cups and mugs in the middle, pans at the bottom* as one note for each place."""
+    if any(chunk.type in FINITE | {"REL", "SUB", "COLON"} for chunk in chunks) or type_at(chunks, 0) not in ("NP", "PUT"):
+        return chunks
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        after = i + 1 + (type_at(chunks, i + 1) == "AND")
+        things = [c.value for c in chunks[after : after + 3 : 2] if c.type == "NP"]
+        listed = [type_at(chunks, after + k) for k in range(3)] == ["NP", "AND", "NP"] and len(things) == 2
+        placed = type_at(chunks, i - 2) == "PREP" and type_at(chunks, i - 1) == "NP"
+        own = type_at(chunks, after + 3) in ("PREP", "ADV") and type_at(chunks, after + 4) in ("NP", "COMMA", "CUT", "")
+        if chunk.type != "COMMA" or not (listed and placed and own):
+            found.append(chunk)
+            continue
+        landmark, relation = chunks[i - 1].value, chunks[i - 2].value.preposition.relation
+        bare = all(t.determiner is None and t.owner is None and t.plural and not t.pronoun for t in things)
+        apart = bare and landmark.determiner is not None and relation not in ("between", "among")
+        found.append(cut(chunk) if apart else chunk)
+    return found
+
+
 def _without_one_of_each_side(chunks: list[Chunk]) -> list[Chunk]:
     """Return *two lamps, one either side of it* as *two lamps either side of it*."""
     for i in range(1, len(chunks)):
         types = [type_at(chunks, i + k) for k in range(-1, 3)]
-        one = types == ["NP", "COMMA", "NP", "PREP"] and chunks[i + 1].value.pronoun == "one"
-        if one and chunks[i + 2].value.preposition.relation == "each_side" and chunks[i - 1].value.plural:
+        if types != ["NP", "COMMA", "NP", "PREP"]:
+            continue
+        group, each = chunks[i - 1].value, chunks[i + 1].value
+        half = each.count is not None and not each.head and 2 * each.count == group.count
+        if (
+            (each.pronoun == "one" or half)
+            and chunks[i + 2].value.preposition.relation == "each_side"
+            and chunks[i - 1].value.plural
+        ):
             return [*chunks[:i], *_without_one_of_each_side(chunks[i + 2 :])]
     return chunks
 
@@ -124,6 +155,48 @@ def _with_own_parts_after(chunks: list[Chunk]) -> list[Chunk]:
         stop = end_before(chunks, end + 2, JOINT_TYPES)
         return [*chunks[:i], *chunks[end + 2 : stop], cut(chunks[i]), *chunks[i + 1 : end + 1], *chunks[stop:]]
     return chunks
+
+
+def _without_verbs_of_comparison(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *closer to the jug than the cup is* without the verb at the end."""
+    return [
+        chunk
+        for i, chunk in enumerate(chunks)
+        if not (
+            [type_at(chunks, i - 2), type_at(chunks, i - 1)] == ["THAN", "NP"]
+            and chunk.type in FINITE and type_at(chunks, i + 1) in _ENDS
+        )
+    ]  # fmt: skip
+
+
+def _with_shared_references(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *one on the left and the other on the right of it* with *of it* after both sides."""
+    for i, chunk in enumerate(chunks):
+        types = [type_at(chunks, i + k) for k in range(-2, 6)]
+        joined = types[:3] == ["NP", "PREP", "NP"] and types[3] in ("AND", "CUT")
+        pair = joined and types[4:] == ["NP", "PREP", "NP", "OF"] and chunks[i - 2].value.pronoun == "one"
+        if pair and {chunk.value.head, chunks[i + 4].value.head} == {"left", "right"} and chunk.value.of is None:
+            return [*chunks[: i + 1], *chunks[i + 5 : i + 7], *chunks[i + 1 :]]
+    return chunks
+
+
+def _without_order_in_lists(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *on the left there is a cup, then a jug* without *then*, which is the order of the list."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "THEN" or type_at(chunks, i - 1) not in ("AND", "COMMA") or type_at(chunks, i + 1) != "NP":
+            continue
+        listed = [c.type for c in chunks[i + 2 :] if c.type not in ("COMMA", "AND", "THEN", "NP", "CUT")]
+        verb = max((k for k in range(i) if chunks[k].type in ("TVERB", "BE")), default=i)
+        begins = [k + 1 for k in range(verb, i) if chunks[k].type in ("TVERB", "BE", "COMMA", "AND", "THEN")]
+        if not listed and begins and all(type_at(chunks, k) in ("NP", "WITH", "AND", "THEN") for k in begins):
+            return _without_order_in_lists([*chunks[:i], *chunks[i + 1 :]])
+    return chunks
+
+
+def _without_colons_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *Bin: should be under the sink* as *bin should be under the sink*."""
+    labelled = [type_at(chunks, k) for k in range(2)] == ["NP", "COLON"] and type_at(chunks, 2) in FINITE
+    return [chunks[0], *chunks[2:]] if labelled else chunks
 
 
 def _without_ends_of_the_past(chunks: list[Chunk]) -> list[Chunk]:

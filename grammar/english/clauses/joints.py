@@ -569,6 +569,10 @@ def classify(segment: Segment) -> list[Chunk]:
             if any(source[k].value == "nor" for k in range(i, end)) and after in PREDICATES:
                 kinds = {"AND"}
                 denied = [c for c in found if isinstance(c.value, Relator) and not c.value.positive]
+                denied += [c for c in found if c.type == "ADJP" and any(not a.positive for a in c.value)]
+                if denied and types[end] == "ADJP":
+                    words = tuple(replace(a, positive=False) for a in source[end].value)
+                    source[end] = replace(source[end], value=words)
                 if denied and isinstance(source[end].value, Relator):
                     now = replace(source[end].value, positive=False)
                     source[end] = Chunk(source[end].type, source[end].start, source[end].end, now, source[end].span)

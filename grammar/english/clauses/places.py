@@ -144,6 +144,9 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     sides = directions_of(phrase)
     arguments, own = _owner(phrase), _own(phrase)
     superlative = any(a.degree is Degree.SUPERLATIVE and a.word in ("far", "left", "right") for a in phrase.adjectives)
+    if head == "end" and not sides and phrase.owner is not None and relation == "on" and phrase.of is None:
+        standing = Adjective("on end", "state", Degree.PLAIN, phrase.span)  # 'place the sofas on their ends'
+        return _made(relator, "state", (), span, value=standing) if phrase.owner.pronoun in ("it", "they") else None
     if kind in ("side", "part", "corner") and "o'clock" not in head:
         sided = _sided(relator, kind, head, sides, phrase, arguments, span, own)
         if sided is not None:
@@ -173,7 +176,7 @@ def _sided(
         if arguments and sides != ("far",):
             return _made(relator, "opposite", arguments, span)
         return _made(relator, kind, arguments, span, part=sides[0])
-    if kind == "side" and not sides and phrase.owner is not None and phrase.owner.pronoun == "it":
+    if kind == "side" and not sides and phrase.owner is not None and phrase.owner.pronoun in ("it", "they"):
         lying = Adjective("sideways", "state", Degree.PLAIN, phrase.span)
         return _made(relator, "state", (), span, value=lying)
     if kind == "side" and not sides and phrase.owner is not None and last_word(phrase.owner.head) in PEOPLE:

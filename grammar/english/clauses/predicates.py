@@ -32,12 +32,12 @@ MOVING = frozenset(
 WRAPPING = {"cover": "on", "top": "on", "line": "on", "fill": "inside", "pack": "inside", "flank": "each_side"}
 """Relation of what a command uses to the thing that it changes: *cover the bowl with a cloth*."""
 _ATTACHING = word_set(
-    "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect"
+    "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect lash"
     " join fasten tie hook link stick pin clip clamp wire press"
 )
 """Verbs after which *to* means that two things touch."""
 AWAY_FROM = {"off": "on", "off of": "on", "out of": "inside"}
-"""Prepositions that, after a verb of staying, deny a place: *keep the cat off the table*."""
+"""Prepositions that, after a verb of being or staying, deny a place: *keep the cat off the table*."""
 _KEEPING = frozenset({"keep", "leave", "stay", "remain"})
 _REACHING = frozenset({"get", "come", "listen", "ask", "look"})
 """Verbs after which *at*, *to* and *for* name no place of the subject."""
@@ -591,6 +591,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation, arguments = "facing", ()  # 'turn the label away from you'
     elif lemma in _ROTATING and relation in ("to", "facing", "pointing") and arguments:
         relation = "facing"  # 'its opening turned to the fire'
+    elif lemma == "fill" and relation in ("part", "top") and not any(a.startswith("at") for a in following.adverbs):
+        relation = "through"  # 'filled to the top'
     elif relation == "through" and lemma in _PASSING:
         relation = "inside"  # 'the bolt goes through the hole'
     elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):
@@ -662,9 +664,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         denied = following.positive is not marker.positive  # 'behind the door, not covered by a cloth'
         return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span, positive=not denied)
     positive = following.positive if marker.positive else not following.positive
-    left = next((place for word, place in AWAY_FROM.items() if word in following.adverbs), None)
-    if relation == "from" and lemma in _KEEPING and left and last_word(arguments[0].head) not in NOT_PLACES:
-        relation, positive = left, not positive
+    if lemma in _KEEPING and relation == "from" and (denied := place_left(following)) is not following:
+        relation, positive = denied.relation, not positive
     return replace(
         following,
         relation=relation,
@@ -674,6 +675,25 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         positive=positive,
         adverbs=(*marker.adverbs, *following.adverbs),
     )
+
+
+def place_left(predicate: Predicate) -> Predicate:
+    """Return *off the table* and *out of the box* as the denial of the place.
+
+    Parameters
+    ----------
+    predicate
+        Predicate that may have such a preposition.
+
+    Returns
+    -------
+    Predicate
+        Denied place; the predicate itself if it names none.
+    """
+    left = next((place for word, place in AWAY_FROM.items() if word in predicate.adverbs), None)
+    if predicate.relation != "from" or left is None or last_word(predicate.arguments[0].head) in NOT_PLACES:
+        return predicate
+    return replace(predicate, relation=left, positive=not predicate.positive)
 
 
 def _is_it(arguments: tuple[NounPhrase, ...]) -> bool:

@@ -26,7 +26,13 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Preposition
 from deixis.grammar.english.vocabulary.tables import word_set
-from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PUT_VERBS, TRANSITIVE_RELATIONS, verb_forms
+from deixis.grammar.english.vocabulary.verbs import (
+    NAMED_LIKE_THINGS,
+    PLACING_VERBS,
+    PUT_VERBS,
+    TRANSITIVE_RELATIONS,
+    verb_forms,
+)
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
 _STORING = word_set(
@@ -71,6 +77,8 @@ _FOUND_OR_PUT = frozenset(
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
+_CALLING = frozenset({"call", "name", "know", "mark", "label", "refer", "title", "term"})
+"""Participles in parentheses before another name of a thing."""
 _NAMES = frozenset({"NP", "ADVERB", "ADJP", "CUT", "NOT", "UNKNOWN"})
 """Chunks in parentheses that say no place: *(A)*, *(mice!)*, *(not the blue one)*."""
 
@@ -95,11 +103,11 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _with_accompanied_members, _with_first_of_owned,
+        _without_vocatives, _with_accompanied_members, _with_first_of_owned, _with_things_of_several,
         _with_denied_commands, _without_adverbs_apart, _without_insertions, _with_counted_labels,
         _with_labels_of_definitions, _with_labels_of_commands, _with_participles_of_commands, _without(_second_verb),
         _without_openings, _with_placed_subjects, _with_participles_of_posture, _with_purposes_of_places,
-        _with_means_as_commands, *(_without(find) for find in asides.FINDERS),
+        _with_means_as_commands, _with_placements_as_commands, *(_without(find) for find in asides.FINDERS),
         _without(_means), _without(_prevented), _with_shared_spots, _without_times, _without(_relative_aside),
         _without(_restriction_of_object),
         _without(_measures_apart), _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
@@ -135,6 +143,17 @@ def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             i = (closing or i) + 1
             continue
         said = opened and kept[-1].type == "NP"
+        doing = inside[1:] if opened and inside[0].type == "ADVERB" else inside
+        called = doing[0].value if said and doing and doing[0].type in ("PART", "TPART") else None
+        if isinstance(called, VerbGroup) and called.lemma.removesuffix("ed") in _CALLING:
+            _leave_out(inside, "another name of a thing does not say where it is")
+            i = (closing or i) + 1  # 'the lower drawer (sometimes marked crisper)'
+            continue
+        done = [c.type for c in inside] == ["NP", "PART"] and inside[0].value.determiner is None
+        if said and done:
+            _leave_out(inside, "how a thing is meanwhile is not where it is")
+            i = (closing or i) + 1  # 'place the sofa (cushions removed) in the truck'
+            continue
         if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
             subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
@@ -183,9 +202,42 @@ def _with_accompanied_members(chunks: list[Chunk]) -> list[Chunk]:
             after += _apart([chunks[i - 1]], chunks[i : i + 2], chunks[i].span)
             i += 2
             continue
+        end = _end_of_own_part(chunks, i)
+        if end is not None:  # 'you have the knife, with the blade facing the plate, and the spoon'
+            after += _apart([chunks[i - 1]], chunks[i + 1 : end], chunks[i + 1].span)
+            i = end
+            continue
         kept.append(chunks[i])
         i += 1
     return _with_last(kept, after)
+
+
+def _end_of_own_part(chunks: list[Chunk], at: int) -> int | None:
+    """Return the end of *, with its blade facing the plate* between an object and *, and* with the last one."""
+    aside = [type_at(chunks, at + k) for k in range(-2, 6)]
+    apart = {aside[2], aside[7]} <= {"COMMA", "CUT"} and aside[0] in ("TVERB", "BE")
+    if not apart or [aside[1], *aside[3:7]] != ["NP", "WITH", "NP", "PREP", "NP"]:
+        return None
+    listed = [type_at(chunks, at + k) for k in range(6, 9)]
+    aimed = last_word(chunks[at + 2].value.head) in AIMED_PARTS
+    joined = listed[0] in ("AND", "CUT") and listed[1] == "NP" and listed[2] in _ENDS
+    return at + 5 if aimed and joined else None
+
+
+def _with_things_of_several(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the plates are left of the jug with a fork on each of them* with a comma before *with*.
+
+    What is on *them* or on *each* is on the plates, and not on the jug.
+    """
+    for i in range(1, len(chunks) - 3):
+        if [type_at(chunks, i + k) for k in range(-1, 4)] != ["NP", "WITH", "NP", "PREP", "NP"]:
+            continue
+        last, several = chunks[i - 1].value, chunks[i + 3].value.pronoun in ("each", "both", "they")
+        before = [c.value for c in chunks[: i - 1] if c.type == "NP"]
+        single = not last.plural and not last.members and (bool(last.head) or last.pronoun == "it")
+        if several and single and type_at(chunks, i - 2) in ("PREP", "OF") and any(p.plural for p in before):
+            return [*chunks[:i], put_in("COMMA", chunks[i]), *chunks[i:]]
+    return chunks
 
 
 def _with_first_of_owned(chunks: list[Chunk]) -> list[Chunk]:
@@ -384,18 +436,13 @@ def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
         led = first in ("PUT", "DO") and chunks[i - 1].type == "COMMA"
         if led and chunk.type == "TPART" and chunks[i + 1].type == "NP" and chunks[i + 2].type in ("PREP", "ADV"):
             group = chunk.value if isinstance(chunk.value, VerbGroup) else None
-            if group is not None and group.lemma in _PLACING:
+            if group is not None and group.lemma in PLACING_VERBS:
                 command = replace(chunk, type="PUT", value=replace(group, form="base"))
                 joint = replace(chunks[i - 1], type="CUT")
                 return [*chunks[: i - 1], joint, command, *_with_participles_of_commands(chunks[i + 1 :])]
     return chunks
 
 
-_PLACING = word_set(
-    "place put lay set position leave hang stack arrange stand insert tuck situate locate store keep attach mount"
-    " install fix"
-)
-"""Verbs of commands that can follow another command as a participle."""
 _UNSURE = frozenset({"can", "could", "may", "might", "would"})
 """Modals of what need not be done."""
 _UNCONDITIONAL = frozenset({"before", "after", "because", "as", "so"})
@@ -457,6 +504,50 @@ def _means(chunks: list[Chunk], at: int) -> _Run | None:
     return end, None
 
 
+def _with_placements_as_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *storing the plates near the sink saves time* and *keeping it on a shelf is a good idea* as a command.
+
+    Only what is good for something is advice, so that *placing it on the edge is risky* stays as it is.
+    """
+    first = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    if [type_at(chunks, first), type_at(chunks, first + 1)] != ["TPART", "NP"]:
+        return chunks
+    group = chunks[first].value
+    if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in PLACING_VERBS | PUT_VERBS:
+        return chunks
+    verb = end_before(chunks, first + 2, FINITE | _BREAKS)
+    placed = any(chunk.type in ("PREP", "ADV") for chunk in chunks[first + 2 : verb])
+    if not placed or type_at(chunks, verb) not in FINITE or not _approves(chunks, verb):
+        return chunks
+    end = end_before(chunks, verb, frozenset({"CUT"}))
+    _leave_out(chunks[verb:end], "what a step is good for does not say where something is")
+    command = replace(chunks[first], type="PUT", value=replace(group, form="base"))
+    return [*chunks[:first], command, *chunks[first + 1 : verb], *chunks[end:]]
+
+
+def _approves(chunks: list[Chunk], at: int) -> bool:
+    """Return True for a verb that says what a placement is good for: *saves time*, *is a good idea*."""
+    group = chunks[at].value
+    if not isinstance(group, VerbGroup) or not group.positive or group.past or group.modal in _UNSURE:
+        return False
+    if group.lemma in _SERVING:
+        return True
+    after = chunks[at + 1] if at + 1 < len(chunks) else None
+    if group.lemma != "be" or after is None:
+        return False
+    words = [a.word for a in after.value] if after.type == "ADJP" else []
+    if after.type == "NP":
+        words = [a.word for a in after.value.adjectives] + after.value.head.split()
+    return not _GOOD.isdisjoint(words)
+
+
+_SERVING = word_set(
+    "ensure allow help save keep simplify reduce minimize minimise protect improve free facilitate maximize maximise"
+)
+"""Verbs of what a placement is good for."""
+_GOOD = word_set("good great best better ideal important helpful useful convenient safest easiest key essential perfect")
+
+
 def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
     """Return *protect it by putting it in the box* and *by putting it there, you …* with a second command.
 
@@ -473,7 +564,7 @@ def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
     for at, chunk in enumerate(chunks[:-3]):
         named = chunk.type == "UNKNOWN" and chunk.value == "by" and chunk.end == chunk.start + 1
         group = chunks[at + 1].value if named and chunks[at + 1].type == "TPART" else None
-        if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in _PLACING:
+        if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in PLACING_VERBS:
             continue
         end = end_before(chunks, at + 2, _BREAKS)
         thing = chunks[at + 2].value if chunks[at + 2].type == "NP" else None
@@ -562,7 +653,7 @@ def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     while [type_at(chunks, end), type_at(chunks, end + 1)] == ["AND", "NP"]:
         end += 2
     noun = last_word(place.value.head)
-    single = not (place.value.plural or be.value.modal or not be.value.positive)
+    single = be.value.positive and (told or not place.value.plural) and be.value.modal in (None, "should", "must")
     fits = relator.preposition.phrase == "for" or (told and relator.preposition.phrase == "to")
     named = _names_things(thing)
     if not (single and fits and named and noun in _STORING and type_at(chunks, end) in _ENDS):
@@ -628,6 +719,13 @@ def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
         and type_at(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
         and chunks[at + 1].value[-1].dimension in ("size", "length", "height", "width", "thickness")
     )  # 'a rack of tubes, longest at the wall'  # fmt: skip
+    above = (
+        [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "ADV"] and type_at(chunks, at + 3) in _ENDS
+        and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
+        and chunks[at + 1].value[-1].dimension in ("size", "length", "height", "width", "thickness", "other")
+    )  # 'pans stacked on the rack, smallest on top'  # fmt: skip
+    if above:
+        return at + 3, None
     apart = apart or nearby
     nearest = (
         [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "NP"] and type_at(chunks, at + 3) in _ENDS
@@ -1092,7 +1190,9 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
                 chunks[i + 1].type == "TVERB" and type_at(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head)
             )
         )
-        if contact:
+        stranded = [type_at(chunks, i + k) for k in (-1, 0, 2)] == ["NP", "NP", "ADV"]  # 'the box the pens are in'
+        stranded = stranded and type_at(chunks, i + 1) in ("BE", "VERB") and bool(chunks[i - 1].value.head)
+        if contact or (stranded and type_at(chunks, i + 3) in FINITE | _ENDS):
             found.append(put_in("REL", chunk))
         found.append(chunk)
     return found

@@ -133,7 +133,9 @@ UNREAL = re.compile(
     r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
     r"|\bin\s+(?:the|this|that|a)\s+(?:picture|photo(?:graph)?|painting|film|story|novel|dream)\s*[.!]?$"
     r"|\b(?:is|are)\s+due\s+(?:on|in|at|under|behind|next|back)\b"
-    rf"|^\s*(?:{_PUTTING})\s+(?!on|in|at|under|next|behind)[^,;:.]*?\b(?:is|are|was|can|may|will|would|helps?|makes?|keeps?|gives?|creates?|saves?|allows?|means?)\b"
+    rf"|^\s*(?:{_PUTTING})\s+(?!on|in|at|under|next|behind)[^,;:.]*?\b(?:is|are|was|can|may|will|would|makes?|gives?|creates?|means?)\b"
+    r"(?!\s+(?:also\s+|often\s+|usually\s+)?(?:an?\s+|the\s+)?(?:good|great|best|better|ideal|important|helpful|useful"
+    r"|convenient|easiest|safest|essential|key|perfect|help|save|keep|allow|ensure|reduce|free|protect)\b)"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )
@@ -212,10 +214,13 @@ CONSEQUENCE = re.compile(
 LIMITED = re.compile(
     r"\bonly\s+(?:on|in|at|during|when|for)\s+[^,.;]*|\bon\s+(?:mon|tues|wednes|thurs|fri|satur|sun)days\b"
     r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b"
+    r"|\b(?:most|some|many|other)\s+(?:days|nights|mornings|evenings|weekends|weeks|years|times)\b"
     r"|\bin\s+(?:\w+\s+)?weather\b|\bin\s+(?:the\s+)?(?:rain|snow)\b",
     re.IGNORECASE,
 )
 """Time outside which a statement need not hold."""
+UNTIL = re.compile(r"(?<=\w\s)(?:before|until|till)\s+[^,.;]+", re.IGNORECASE)
+"""Time up to which a denial holds: *do not put the cup there before dessert*."""
 EVENT = re.compile(
     r"\W*(?:in\s+an?\s+(?:[\w-]+\s+){0,2}(?:game|match|emergency|crisis|storm|drill|power\s+cut|heatwave)\b"
     r"|in\s+(?:the\s+event|case)\s+of\s+[^,.;]*)",
@@ -226,6 +231,35 @@ ELSEWHERE = re.compile(
     r"\s*at\s+(?:my|our|your|his|her|their|the)\s+(?!own\b)[\w-]+(?:['\u2019]s|s['\u2019])\b[^,.;]*,", re.IGNORECASE
 )
 """Place of other people at the beginning of a sentence: *at my neighbour's table*."""
+
+
+_ASKED = re.compile(
+    r"(?:if|in\s+case)\s+(?:you|anyone|anybody|someone|somebody|people|he|she|they|guests)(?:['\u2019](?:re|s)|\s+(?:are|is|ever|should))?\s+"
+    r"(?:asks?|asking|wonders?|wondering|looks?\s+for|looking\s+for|(?:needs?|wants?|like)\s+to\s+know)\b",
+    re.IGNORECASE,
+)
+"""Condition of a question that the statement answers, and not of what it states: *if anyone asks, …*."""
+
+
+def is_condition(text: str) -> bool:
+    """Return True unless a condition only says who may ask about what a statement says.
+
+    Parameters
+    ----------
+    text
+        Text of the condition, from its conjunction on.
+
+    Returns
+    -------
+    bool
+        True if the statement holds under the condition alone.
+
+    Examples
+    --------
+    >>> is_condition("if anyone asks"), is_condition("if it rains")
+    (False, True)
+    """
+    return _ASKED.match(text) is None
 
 
 def condition_of(sentence: Sentence) -> str | None:
@@ -249,7 +283,8 @@ def condition_of(sentence: Sentence) -> str | None:
         return None
     if commanded and _IN_ORDER.match(sentence.text):
         return None  # 'after washing the cups, put them on the shelf'
-    return " ".join(sentence.text.split(",", 1)[0].split())
+    text = " ".join(sentence.text.split(",", 1)[0].split())
+    return text if commanded or is_condition(text) else None
 
 
 def inserted_condition(clause: str) -> str | None:

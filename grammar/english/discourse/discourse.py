@@ -28,8 +28,10 @@ from deixis.grammar.english.discourse.commitment import (
     SELDOM,
     UNREAL,
     UNSURE,
+    UNTIL,
     condition_of,
     inserted_condition,
+    is_condition,
 )
 from deixis.grammar.english.discourse.drafts import RARE, Draft, Qualification
 from deixis.grammar.english.discourse.entities import Entity, Role
@@ -102,6 +104,9 @@ EACH_APART = re.compile(
 _FORBIDDEN = frozenset({"near", "next_to", "touching", "between", "against", "leaning", "opposite", "across", "facing"})
 """Relations that *no* denies, besides the directions: *no book touches the lamp*."""
 
+_PILING = frozenset({"stack", "pile", "bundle", "heap"})
+"""Commands whose verb names later what they made."""
+
 ABSENT = frozenset(["missing", "miss", "absent", "gone"])
 
 
@@ -128,6 +133,7 @@ class Discourse(Statements):
             self.references.lost = [problem.span for problem in sentence.misunderstood]
             self.condition = condition_of(sentence)
             self.elsewhere = self._other_viewpoint(sentence)
+            self.titled = sentence.place if sentence.heading else self.titled
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
             if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
                 self._ask_about(sentence.fragment)
@@ -285,6 +291,8 @@ class Discourse(Statements):
         if clause.mood is Mood.QUESTION:
             self._ask_about(clause.subject, clause.predicates)
             return
+        if clause.mood is Mood.STATEMENT and clause.condition is not None and not is_condition(clause.condition):
+            clause = replace(clause, condition=None)
         modal = clause.modal
         denied = tuple(p for p in clause.predicates if not p.positive)
         if modal in UNCERTAIN and clause.positive and 0 < len(denied) < len(clause.predicates):
@@ -383,6 +391,10 @@ class Discourse(Statements):
                 subject = _without_verb(subject)  # 'when the kettle boils'
             handled = self._introduce(subject)  # 'fold the napkin'
             if handled is not None:
+                verb = self.text[slice(*clause.span)].casefold().partition(" ")[0]
+                if verb in _PILING and clause.mood is Mood.COMMAND:  # 'stack the mats', and later 'the stack'
+                    handled.itself.aliases.add(verb)
+                    self.references.renamed.append(handled.itself)
                 self.references.recent.insert(0, Focus(handled, [], None, sentence))
                 self.references.named = []
             return
@@ -392,7 +404,7 @@ class Discourse(Statements):
         if clause.existential and not clause.predicates and subject.members:
             subject = _with_shared_surface(subject)
         text = self.text[self.references.start : self.end]
-        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(text) or EVENT.match(text)
+        limit = self._limit(clause, sentence) or ELSEWHERE.match(text) or EVENT.match(text)
         if limit is not None and self.how.condition is None:
             self.how = replace(self.how, condition=limit[0].strip(" ,."))
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
@@ -461,10 +473,25 @@ class Discourse(Statements):
             self._say_of_one(entity, predicates, subject)
         else:
             self._say(entity, predicates, subject, existential=clause.existential)
-        if modal in UNCERTAIN:
+        if modal in UNCERTAIN and positive:
             self._alternative_to_the_last(first, entity)
         if modal in OBLIGED:
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _limit(self, clause: Clause, sentence: int) -> re.Match[str] | None:
+        """Return the words for a time outside which a clause need not hold: *…, but most nights it is in the sink*."""
+        spans = [other.span for other in self.sentences[sentence].clauses]
+        start = max((end for _, end in spans if end <= clause.span[0]), default=clause.span[0])
+        following = min((other for other, _ in spans if other >= clause.span[1]), default=None)
+        denied = not clause.positive or any(not predicate.positive for predicate in clause.predicates)
+        until = UNTIL.search(self.text, clause.span[0], following or self.end) if denied else None
+        places = [q for p in clause.predicates for q in (p, *(r for a in p.arguments for r in a.predicates))]
+        if until is not None and not any(p.relation == "in_front" for p in places):
+            return until  # 'never put the cup on the table before dessert'
+        for match in LIMITED.finditer(self.text, start, self.end):
+            if following is None or not clause.span[1] <= match.start() < following:
+                return match
+        return None
 
     def _say_of_one(self, options: Entity, predicates: tuple[Predicate, ...], phrase: NounPhrase) -> None:
         """State predicates of one of several things: *the cup or the mug is on the saucer*."""

@@ -11,7 +11,7 @@ from deixis.grammar.english.discourse.references import References
 from deixis.grammar.english.discourse.surfaces import surface_noun
 from deixis.grammar.english.tree import Mood, NounPhrase, Predicate, Sentence, Span
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
-from deixis.grammar.english.vocabulary.nouns import HEADED, PEOPLE, last_word
+from deixis.grammar.english.vocabulary.nouns import HEADED, PEOPLE, SURROUNDINGS, last_word
 from deixis.grammar.english.vocabulary.things import can_have_a_place
 from deixis.ontology.graph.claims import COLLECTIVE
 
@@ -110,6 +110,7 @@ class Drafting:
         self.end = 0  # of the sentence in the text
         self.condition: str | None = None
         self.elsewhere: str | None = None  # words of the sentence by which another place than the viewer's is meant
+        self.titled: tuple[Predicate, ...] = ()  # place that the last heading names
         self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
         tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]
         past = sum(tenses)
@@ -138,10 +139,12 @@ class Drafting:
                 self._add(relation, tuple(part), arguments, value, metres, how)
             return
         if relation in ("pointing", "facing"):
-            turned = TURNED_AWAY.search(self.text[slice(*how.span)]) is not None
+            turned = TURNED_AWAY.search(self.text[slice(*how.span)]) is not None or self.part in ("back", "rear")
             if turned and value == "viewer":
                 value = "away"
-            elif turned and (arguments or value in PEOPLE):
+            elif self.part in ("back", "rear") and value in ("left", "right"):
+                value = "right" if value == "left" else "left"
+            elif turned and (arguments or value in PEOPLE | SURROUNDINGS):
                 how = replace(how, positive=not how.positive)
             if self.part == "handle" and all(last_word(s.noun) in HEADED for s in subjects):
                 how = replace(how, by_handle=True)

@@ -15,7 +15,9 @@ from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.adjectives import is_material_noun
 from deixis.grammar.english.vocabulary.nouns import (
+    HOLDERS,
     PARTS,
+    PEOPLE,
     PLACES_OF,
     SUBSTANCES,
     SURFACES,
@@ -166,6 +168,7 @@ class Mentions(Drafting, ABC):
             p for p in phrase.predicates
             if besides is not None and (
                 (not new and self._bears(entity, p)) or _shares_support(phrase, relation, p)
+                or _is_packed(phrase, relation, p)
                 or (p.relation == "opposite" and relation in ("in_front", "behind") and len(p.arguments) == 1)
             )  # 'put it in front of the chair on the opposite side of the lamp'
         )  # fmt: skip
@@ -367,6 +370,9 @@ def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predica
     What stands on the floor, or is a part of the room, is beside the desk itself: *on the desk next to the door*.
     """
     named = phrase.determiner == "the" or phrase.owner is not None
+    person = len(predicate.arguments) == 1 and last_word(predicate.arguments[0].head) in PEOPLE
+    if person and named and predicate.relation in ("in_front", "near", "next_to") and relation in ("on", "inside"):
+        return True  # 'on the tray in front of the guest'
     if relation != "on" or not named or phrase.plural or last_word(phrase.head) not in _SUPPORTS_OF_SEVERAL:
         return False
     if predicate.relation not in _NEXT_TO or len(predicate.arguments) != 1 or predicate.reversed:
@@ -374,6 +380,16 @@ def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predica
     other = predicate.arguments[0]
     noun = last_word(other.head)
     return bool(noun) and not other.members and noun not in SURROUNDINGS | SURFACES | _FURNITURE
+
+
+def _is_packed(phrase: NounPhrase, relation: str | None, predicate: Predicate) -> bool:
+    """Return True for *in small bowls* after *on the tray*, which says what the subject is in, and not the tray."""
+    if relation is None or predicate.relation != "inside" or predicate.reversed or len(predicate.arguments) != 1:
+        return False
+    named = phrase.determiner in ("the", "this") or phrase.owner is not None
+    vessel = predicate.arguments[0]
+    bare = vessel.determiner is None and vessel.plural and vessel.owner is None and not vessel.members
+    return named and bare and last_word(vessel.head) in VESSELS | HOLDERS
 
 
 _NEXT_TO = frozenset({"next_to", "near", "in_front", "behind", "left", "right"})

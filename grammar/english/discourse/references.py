@@ -37,6 +37,11 @@ NAMED = re.compile(
     re.IGNORECASE,
 )
 """Noun phrase at the end of a clause."""
+MOVED = re.compile(
+    r"\b(?:the|a|an|your|my)\s+([a-z]+(?:\s+(?!on|in|under|behind)[a-z]+)?)\s+(?:on|onto|in|into|under|behind|near|by|next\s+to)\s+$",
+    re.IGNORECASE,
+)
+"""Object of a verb before the place that it is moved to."""
 MAX_SENTENCES_TO_GROUP = 4
 """Number of sentences over which *the smallest* goes back to a group."""
 MIN_LOST = 12
@@ -147,6 +152,7 @@ class References:
     doubtful: list[PronounUse] = field(default_factory=list)
     guesses: list[tuple[Span, Guess]] = field(default_factory=list)  # phrases whose antecedent is a close call
     renamed: list[Entity] = field(default_factory=list)  # entities with aliases
+    pair: tuple[Entity, ...] = ()  # the two things that *the former* and *the latter* stood for last
     _by_last_word: dict[str, list[Entity]] = field(default_factory=dict)
     _indexed: int = 0  # entities that the index holds
 
@@ -369,6 +375,8 @@ class References:
         latest_first = self._named_like(phrase.head)
         if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[0]] + self.words(phrase)):
             return None
+        if any(a.word == "matching" for a in phrase.adjectives):
+            return None  # 'align the pockets with the matching pockets'
         if any(a.word == "remaining" for a in phrase.adjectives):
             return self._remaining(phrase, latest_first)
         if self._is_ambiguous(phrase, latest_first):
@@ -383,7 +391,8 @@ class References:
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
                 and entity.born < self.sentence and entity.noun == phrase.head and not _agreement(entity, phrase),
                 entity.compared,
-                entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
+                phrase.head not in (entity.noun, *entity.aliases) and not entity.was_called(phrase.head),
+                -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
                 -entity.named if entity.noun != phrase.head else 0,  # 'the plate': the one that is named most often
             ),
@@ -413,9 +422,13 @@ class References:
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
             bare = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
+            if bare and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'folded napkins' after 'the paper napkins', 'used cards' after 'four cards'
             longer = entity.noun != phrase.head and not entity.was_called(phrase.head)
-            if bare and longer and phrase.adjectives and not _agreement(entity, replace(phrase, plural=False)):
-                continue  # 'folded napkins' after 'the paper napkins'
+            if bare and longer and entity.born < self.sentence - MAX_SENTENCES_TO_GROUP:
+                continue  # 'cups, mugs and plates' after 'measuring cups', long before
+            if _are_others(phrase, entity):
+                continue
             if entity.group is not None and entity.group in self.entities:
                 continue
             if (
@@ -428,7 +441,9 @@ class References:
             if entity.plural and not entity.members and 1 < (phrase.count or 0) <= MAX_COUNTED:
                 entity.split(phrase.count or 0)  # 'the two corks'
             if entity.members and not phrase.plural and phrase.determiner not in ("each", "every", "all", "both"):
-                return self.member(entity, phrase) or entity
+                member = self.member(entity, phrase)
+                apart = any(a.dimension in ("position", "rank") for a in phrase.adjectives)
+                return member or (None if apart else entity)  # 'the bottom board', where two of three are known
             return entity
         return None
 
@@ -436,6 +451,7 @@ class References:
         """Return True for *the plate* after *the butter plate* and *the side plate*, of which neither was called so."""
         bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
         named = [e for e in latest_first if _can_name(phrase.head, e) and not e.compared]
+        named = [e for e in named if e.noun != phrase.head or e.members or e.single or not e.plural]  # not 'bags'
         longer = {e.noun for e in named if e.noun != phrase.head and not e.was_called(phrase.head)}
         return bare and not phrase.predicates and len(longer) > 1 and len(named) == len(longer)
 
@@ -626,6 +642,9 @@ class References:
         word = phrase.pronoun or ""
         if word in VIEWER_WORDS:
             return self.viewer
+        if word == "object":  # which a command leaves out: that of the command before
+            last = next((f for f in self.recent[:1] if f.sentence >= self.sentence - 1), None)
+            return last.subject if last is not None and last.subject and last.subject.role is Role.THING else None
         if word == "both" and phrase.of is not None and phrase.of.pronoun == "they" and not phrase.of.head:
             phrase = replace(phrase, of=None)
         if phrase.of is not None and word not in ("it", "they"):
@@ -637,6 +656,8 @@ class References:
                 return self.picked(self.member(group, phrase) or next(free, None) or next(group.leaves()), phrase)
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("it", "they") and self._is_lost(phrase):
+            return None
+        if word == "they" and relation is None and besides is None and self._are_persons(phrase):
             return None
         if word == "they" and (left_out := self._left_out(phrase)) is not None:
             return left_out
@@ -664,21 +685,32 @@ class References:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None
         if word in ("former", "latter"):
-            here = [entity for entity in self.named if entity is not besides]
-            if len(here) > 1:  # 'between the mug and the bowl, but closer to the latter'
-                return here[-2 if word == "former" else -1]
-            told = [f for f in self.recent if f.subject is not None]
-            pair = next((f for f in told if f.others), None)
-            for focus in told:
-                if focus.subject is not None and not focus.subject.noun and len(focus.subject.members) > 1:
-                    return focus.subject.members[0 if word == "former" else -1]
-                if focus.others and focus.sentence < self.sentence:
-                    pair = focus
-                    break
-            return None if pair is None else pair.subject if word == "former" else pair.others[0]
+            self.pair = self._pair_of_latter(besides) or ()
+            return None if not self.pair else self.pair[0 if word == "former" else -1]
         if word in ("one", "other"):
             return self._ellipsis(phrase, besides, relation)
         return None
+
+    def _pair_of_latter(self, besides: Entity | None) -> tuple[Entity, Entity] | None:
+        """Return the two things of which *the former* is the first and *the latter* the second."""
+        here = [entity for entity in self.named if entity is not besides]
+        if len(here) > 1:  # 'between the mug and the bowl, but closer to the latter'
+            return here[-2], here[-1]
+        told = [f for f in self.recent if f.subject is not None]
+        if len(self.pair) > 1 and told and told[0].subject in self.pair:
+            return self.pair[0], self.pair[-1]  # 'the former is red, the latter is blue'
+        here_told = [f for f in told[:2] if f.sentence == self.sentence and f.relation == told[0].relation]
+        subjects = [f.subject for f in here_told if f.subject is not None]
+        if len(subjects) > 1 and subjects[0] is not subjects[1]:
+            return subjects[1], subjects[0]  # 'the knife is on the mat and the fork isn't; the latter …'
+        pair = next((f for f in told if f.others), None)
+        for focus in told:
+            if focus.subject is not None and not focus.subject.noun and len(focus.subject.members) > 1:
+                return focus.subject.members[0], focus.subject.members[-1]
+            if focus.others and focus.sentence < self.sentence:
+                pair = focus
+                break
+        return None if pair is None or pair.subject is None else (pair.subject, pair.others[0])
 
     def _is_lost(self, phrase: NounPhrase) -> bool:
         """Return True for a pronoun after a clause of its sentence that was not understood, which it may go back to."""
@@ -686,12 +718,20 @@ class References:
             return False
         return any(end <= phrase.span[0] and end - start > MIN_LOST for start, end in self.lost)
 
+    def _are_persons(self, phrase: NounPhrase) -> bool:
+        """Return True for *they* after persons of its sentence: *so that guests can sit while they fill their plates*."""
+        words = re.findall(r"[a-z]+", self.text[self.start : phrase.span[0]].casefold())
+        return any(word.endswith("s") and word[:-1] in PEOPLE for word in words)
+
     def _left_out(self, phrase: NounPhrase) -> Entity | None:
         """Return the object of an earlier clause of the sentence that says no place: *fold the napkin and put it …*."""
         if any(focus.sentence == self.sentence and not _is_person(focus.subject) for focus in self.recent):
             return None
         before = self.text[self.start : phrase.span[0]]
         named = list(NAMED.finditer(before))
+        placed = MOVED.search(before, 0, named[-1].start()) if named else None
+        if placed is not None:  # 'I put the mirror on the desk, but it is safer behind the sofa'
+            named.append(placed)
         words = named[-1][1].casefold().split() if named else []
         if not words or len(words) > 3 or not prepositions().keys().isdisjoint(words):
             return None
@@ -1043,6 +1083,14 @@ def _is_one_of_a_kind(phrase: NounPhrase, entity: Entity) -> bool:
     kind = entity.plural and not (entity.single or entity.members) and not phrase.plural and phrase.determiner == "the"
     told = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN and a.dimension in _OWN}
     return kind and bool(told) and not told & entity.adjectives
+
+
+def _are_others(phrase: NounPhrase, group: Entity) -> bool:
+    """Return True for *all other cards* and *these five cards* after *four cards*: more than the group has."""
+    if not (phrase.plural and group.members and group.noun):
+        return False
+    other = phrase.determiner == "other" or any(a.word == "other" for a in phrase.adjectives)
+    return (other and not any(leaf.is_picked for leaf in group.leaves())) or (phrase.count or 0) > group.size
 
 
 def _agreement(entity: Entity, phrase: NounPhrase) -> int:

@@ -96,11 +96,29 @@ def _whole(entity: Entity) -> Entity:
     return entity.whole if entity.role is Role.PART and entity.whole is not None else entity
 
 
+_LATERAL = frozenset({"left", "right"})
+"""Relations after which *the other side* of a thing is the opposite one."""
+
+
 class Relations(Mentions):
     """Reader of predicates that tell a place."""
 
+    def _of_the_other_side(self, predicate: Predicate) -> Predicate:
+        """Return *A is left of B, and C on the other side of it* with the direction opposite to the one before."""
+        last = self.references.recent[0] if self.references.recent else None
+        relation = None if last is None or predicate.relation != "opposite" else last.relation
+        written = self.text[slice(*predicate.span)].casefold()
+        if last is None or " other side" not in written or relation not in _LATERAL or len(last.others) != 1:
+            return predicate
+        (phrase,) = predicate.arguments
+        named = phrase.pronoun == "it" or self.references.earlier(phrase) is last.others[0].itself
+        if not named or last.sentence < self.how.sentence - 1:
+            return predicate
+        return replace(predicate, relation=OPPOSITES[relation])
+
     def _relate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """State a relation between the subject and the arguments."""
+        predicate = self._of_the_other_side(predicate)
         relation = predicate.relation
         if "exactly" in predicate.adverbs and relation in EXACT:
             relation = f"exactly_{relation}"
@@ -364,6 +382,8 @@ class Relations(Mentions):
 
     def _at_region(self, subject: Entity, relation: str, region: Region) -> None:
         arguments = () if region.of is None else (region.of,)
+        if region.term == "side" and region.of is None and region.value is None and relation in ("inside", "on", "to"):
+            return  # 'to the inside of the sides', which are parts of something
         if relation == "parallel":
             self._add("parallel", (subject,), arguments, value=" ".join(filter(None, (region.value, region.term))))
         elif relation in ("against", "touching", "leaning") and region.of is not None and region.of.role is Role.THING:
@@ -407,12 +427,16 @@ class Relations(Mentions):
                 continue
             if isinstance(found, Entity) and found.role in (Role.THING, Role.SURROUNDING):
                 arguments.append(found)
-        if not arguments and predicate.relation in ("end", "edge", "side", "corner") and predicate.part:
+        if not arguments and predicate.relation in ("end", "edge", "side", "corner", "part") and predicate.part:
             before = [
                 d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation == predicate.relation
             ]
             if before and before[-1].value != predicate.part and subject not in before[-1].subjects:
                 arguments = list(before[-1].arguments)  # 'at the left end of the rail … and at the right end'
+        if not arguments and not predicate.arguments and predicate.relation == "part" and predicate.part:
+            held = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation == "inside"]
+            holders = [a for d in held[-1:] for a in d.arguments if last_word(a.noun) in VESSELS | HOLDERS]
+            arguments = holders if len(holders) == 1 and subject not in held[-1].subjects else []  # 'in the back'
         if predicate.relation == "edge":
             self.edge = predicate.part
         others += arguments
@@ -426,6 +450,8 @@ class Relations(Mentions):
                 self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
             return
         if predicate.relation == "part" and not part and not arguments:
+            if predicate.arguments:
+                self._add("on", (subject,), ())  # 'on one half of the table'
             return  # 'in a position', which does not say where
         self._add(predicate.relation, (subject,), tuple(arguments), value=part)
         words = self.text[slice(*predicate.span)].casefold()
@@ -435,6 +461,10 @@ class Relations(Mentions):
 
     def _on_top(self, subject: Entity) -> None:
         """Read *on top*: of the last object, or the farthest one of a line that the subject is a member of."""
+        here = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation == "part"]
+        if here and "bottom" in (here[-1].value or "").split() and subject not in here[-1].subjects:
+            self._add("part", (subject,), here[-1].arguments, value="top")  # 'pots at the bottom, lids on top'
+            return
         focus = next((f for f in self.references.recent if f.subject is not subject), None)
         last = None if focus is None else focus.subject
         if focus is None or last is None or last.role is not Role.THING:
@@ -492,6 +522,8 @@ class Relations(Mentions):
                 predicate.relation, (subject,), (), value=beside.value
             )  # 'A to the left of the host, B to the right'
             return
+        if predicate.relation == "near" and predicate.part is None:
+            return  # 'store the sponges nearby', which does not say near what
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
         high = self.text[slice(*predicate.span)].casefold().startswith(("up ", "high up", "at top"))
         if (

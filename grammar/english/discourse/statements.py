@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from deixis.grammar.english.confidence import UNJOINED, Guess
@@ -27,6 +28,7 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -56,6 +58,11 @@ NOT_STATES = word_set(
     " give hand drink eat keep say design intend utilize"
 )
 """Verbs whose participles tell no state of a thing."""
+
+_KEPT = re.compile(
+    r"\b(?:go|goes|belongs?|stored?|keep|kept|put|placed?|put|lives?|moved?|stash|stashed)\b", re.IGNORECASE
+)
+"""Verbs before *here* and *there* that mean a place named before, and not one that is pointed at."""
 
 _DETACHED = frozenset({"lid", "cap"})
 """Parts that are taken off their thing, and then have a place of their own."""
@@ -157,8 +164,8 @@ class Statements(Relations):
         value = predicate.value.word if predicate.value is not None else None
         relation = predicate.relation
         if predicate.degree is Degree.SUPERLATIVE and predicate.value is not None:
-            if subject.itself.members:
-                return  # 'the smallest' of them is one of them
+            if subject.itself.members or predicate.value.word in ("high", "low"):
+                return  # 'the smallest' of them is one of them; 'put it lowest on the cart' tells a place
             name = SUPERLATIVES.get((predicate.value.dimension, POLES.get(predicate.value.word, 0)))
             if name is not None:
                 self._add(name, (subject,), ())
@@ -174,17 +181,54 @@ class Statements(Relations):
             return
         elif relation == "state" and ("being" in predicate.adverbs or not UNJOINED.isdisjoint(self.how.guesses)):
             return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
+        elif relation == "state" and (self.references.lost or str(value).endswith("ing")):
+            return  # 'fill the flask half full with the mixture you want to distill': the words can belong to others
+        elif relation == "state":
+            value = self._participle(value, predicate)
         self._add(relation, (subject,), (), value=value)
+
+    def _participle(self, lemma: str, predicate: Predicate) -> str:
+        """Return the participle for a state of a thing: *hidden* for *it is hidden*, *burning* for *burns*."""
+        forms = verb_forms()
+        written = [w for w in self.text[slice(*predicate.span)].casefold().split() if w in forms]
+        told = next((word for word in written if forms[word].lemma == lemma), None)
+        if told is None or forms[told].form not in ("s", "base"):
+            return told or lemma
+        return next((word for word, form in forms.items() if form.lemma == lemma and form.form == "ing"), lemma)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         pass
 
     def _say_there(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        here = self.text[slice(*predicate.span)].casefold().endswith(("here", "there")) and not predicate.arguments
+        if here and subject.role is Role.THING and _KEPT.search(self.text[slice(*self.how.span)]):
+            self._say_here(subject, others)
+            return
         if self.how.positive or self.how.past:
             return
         for leaf in subject.leaves():
             leaf.absent = True
             self._add("count", (leaf,), (), value="0", how=replace(self.how, positive=True))
+
+    def _say_here(self, subject: Entity, others: list[Entity]) -> None:
+        """Read *the door is warm, so keep the butter there*: at the place that was named last, or that of the heading."""
+        late = [f for f in self.references.recent[:2] if f.sentence >= self.how.sentence - 1]
+        named = [e for f in late for e in (*f.others, f.subject) if e is not None and e.itself is not subject.itself]
+        place = next((e for e in named if e.role is not Role.PERSON and self._holding(e) is not None), None)
+        if place is not None:
+            self._pair(subject, self._holding(place) or "on", place, False)
+            others.append(place)
+            return
+        for predicate in self.titled:
+            self._predicate(subject, predicate, others)
+
+    def _holding(self, thing: Entity) -> str | None:
+        """Return the relation of what is kept in or on a thing; None for a thing in which nothing is kept."""
+        noun = last_word(thing.noun)
+        stated = next((d.relation for d in reversed(self.drafts) if thing in d.arguments), None)
+        if stated in ("inside", "on") and noun in VESSELS | HOLDERS | SURFACES | SUPPORTS:
+            return stated
+        return "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES | SUPPORTS | {"door"} else None
 
     def _say_follows(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read *followed by the probe*: it is farther on in the direction in which the first was placed."""
@@ -213,6 +257,7 @@ class Statements(Relations):
                 self._say(self.references.picked(free[0], one[0]), one[0].predicates, one[0])
             return
         for phrase in predicate.arguments:
+            one_of_them = phrase.pronoun == "one" and phrase.determiner == "the"  # 'my mug, the big blue one'
             for adjective in phrase.adjectives:
                 name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
                 if adjective.degree is Degree.SUPERLATIVE and name is not None:
@@ -225,8 +270,9 @@ class Statements(Relations):
                     self._add(f"{adjective.word}most", (subject,), ())
                 elif adjective.dimension == "rank" and adjective.rank is not None and phrase.head not in GENERAL:
                     self._add("ordinal", (subject,), (), value=f"{adjective.rank} from left")
-                elif adjective.dimension in ("colour", "size", "material", "shape") and phrase.head:
+                elif adjective.dimension in ("colour", "size", "material", "shape") and (phrase.head or one_of_them):
                     self._add(adjective.dimension, (subject,), (), value=adjective.word)
+                    subject.itself.adjectives.add((adjective.dimension, adjective.word))
             if phrase.head and phrase.head not in GENERAL and phrase.determiner in ("a", "an"):
                 subject.itself.aliases.add(phrase.head)
                 self.references.renamed.append(subject.itself)

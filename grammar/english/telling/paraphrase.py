@@ -1,12 +1,15 @@
-"""Say facts in plain English, one short clause for each."""
+"""Say facts in plain English, in short clauses."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
 
 from deixis.grammar.english.telling.wording import (
+    SUPERLATIVES,
     auxiliary,
     clause_of_claim,
+    listed,
     name_plainly,
     said_of_claim,
     said_of_fact,
@@ -14,11 +17,13 @@ from deixis.grammar.english.telling.wording import (
 from deixis.grammar.reading import StatedFact, joined_choices
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
-from deixis.ontology.inflection import is_plural
+from deixis.ontology.inflection import is_plural, plural
 
 
 def paraphrase(facts: Sequence[StatedFact], surface: str = "table") -> str:
-    """Return a plain paraphrase of facts, a clause for each; empty for none.
+    """Return a plain paraphrase of facts; empty for none.
+
+    What is so of several things is said in one clause.
 
     Parameters
     ----------
@@ -38,23 +43,68 @@ def paraphrase(facts: Sequence[StatedFact], surface: str = "table") -> str:
     >>> paraphrase([StatedFact(claim, 0, (0, 4))], "desk")
     'The lamp is in the far left corner of the desk.'
     """
-    clauses = list(dict.fromkeys(_clause(fact, surface) for fact in joined_choices(facts)))
-    said = "; ".join(clauses)
+    clauses: dict[Hashable, _Clause] = {}
+    for fact in joined_choices(facts):
+        clause = _clause(fact, surface)
+        known = clauses.setdefault(clause.key(), clause)
+        known.subjects += [subject for subject in clause.subjects if subject not in known.subjects]
+    said = "; ".join(clause.words() for clause in clauses.values())
     return f"{said[0].upper()}{said[1:]}." if said else ""
 
 
-def _clause(stated: StatedFact, surface: str) -> str:
+def _named(names: Sequence[str]) -> str:
+    """Name objects with articles; three or more of a group with consecutive numbers are *the cups 1 to 3*."""
+    runs: list[list[tuple[str, int]]] = []
+    for name in names:
+        stem, _, number = name.rpartition("_")
+        numbered = (stem or name, int(number) if stem and number.isdecimal() else 0)
+        goes_on = bool(runs) and numbered[1] > 1 and runs[-1][-1] == (numbered[0], numbered[1] - 1)
+        runs = [*runs[:-1], [*runs[-1], numbered]] if goes_on else [*runs, [numbered]]
+    phrases, place = [], 0
+    for run in runs:
+        stem = plural(run[0][0].replace("_", " "))
+        several = f"the {stem} {run[0][1]} to {run[-1][1]}"
+        phrases += [several] if len(run) > 2 else [name_plainly([name]) for name in names[place : place + len(run)]]
+        place += len(run)
+    return listed(phrases)
+
+
+@dataclass(slots=True)
+class _Clause:
+    """A clause of a paraphrase; ``shared`` is True if what it says holds of each of its subjects alone."""
+
+    stated: StatedFact
+    subjects: list[str]
+    predicate: str
+    denied: bool
+    shared: bool
+
+    def key(self) -> Hashable:
+        """Return what clauses have in common that are said of several subjects at once."""
+        content = self.stated.content
+        qualified = (self.stated.condition, self.stated.past, self.stated.uncertain, content.optional, content.weight)
+        subjects = () if self.shared else (content,)
+        return self.predicate, self.denied, qualified, self.stated.alternative, subjects
+
+    def words(self) -> str:
+        """Return the clause without a capital letter and a full stop."""
+        plural = len(self.subjects) > 1 or is_plural(self.subjects[0])
+        be = auxiliary(self.stated, plural) + (" not" if self.denied else "")
+        content = self.stated.content
+        said = f"{_named(self.subjects)} {be} {self.predicate}"
+        if isinstance(content, Claim) and not self.predicate:
+            said = clause_of_claim(content, be)
+        condition = self.stated.condition
+        return f"{condition[0].lower()}{condition[1:]}, {said}" if condition else said
+
+
+def _clause(stated: StatedFact, surface: str) -> _Clause:
     content = stated.content
     if isinstance(content, Fact):
         subject, predicate = said_of_fact(content)
-        subjects: tuple[str, ...] = (subject,)
         denied = not content.positive and len(content.relations) == 1
-    else:
-        subjects, predicate, denied = content.subjects, said_of_claim(content, surface) or "", not content.positive
-    be = auxiliary(stated, plural=len(subjects) > 1 or is_plural(subjects[0])) + (" not" if denied else "")
-    said = f"{name_plainly(subjects)} {be} {predicate}"
-    if isinstance(content, Claim) and not predicate:
-        said = clause_of_claim(content, be)
-    if stated.condition:
-        return f"{stated.condition[0].lower()}{stated.condition[1:]}, {said}"
-    return said
+        return _Clause(stated, [subject], predicate, denied, stated.alternative is None)
+    predicate = said_of_claim(content, surface) or ""
+    shared = len(content.subjects) == 1 and bool(predicate) and stated.alternative is None
+    shared = shared and content.relation not in SUPERLATIVES | {"ordinal", "kind"}
+    return _Clause(stated, list(content.subjects), predicate, not content.positive, shared)

@@ -7,14 +7,15 @@ from collections.abc import Callable, Sequence
 from deixis.grammar.reading import StatedFact
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
-from deixis.ontology.inflection import plural
+from deixis.ontology.inflection import is_plural, plural
 from deixis.ontology.relations.relation import Relation
 from deixis.ontology.tbox import default_ontology
 
 RELATION_WORDS = {
     "top": "farther from you than", "bottom": "nearer to you than", "stacked": "stacked upon",
     "closer": "closer to", "farther": "farther from", "nearest": "nearest to", "farthest": "farthest from",
-    "pointing": "pointing to", "distance": "from", "distance_less": "from", "distance_more": "from",
+    "pointing": "pointing to", "each_side": "on each side of", "distance": "from", "distance_less": "from",
+    "distance_more": "from",
 }  # fmt: skip
 """Words for a relation whose phrase in the layout language means something else in English, or nothing."""
 
@@ -210,7 +211,7 @@ def said_of_claim(claim: Claim, surface: str = "table", name: Namer = name_plain
             return f"number {rank}" + (f" from the {side}" if side else "")
         case "kind":
             return f"{'an' if (value or '').strip('`')[:1] in 'aeiou' else 'a'} {value}"
-        case "stacked" | "nested" if len(claim.subjects) > 1:
+        case "stacked" | "nested" if len(claim.subjects) > 1 or is_plural(claim.subjects[0]):
             return "on top of each other" if relation == "stacked" else "inside each other"
         case "near_each_other" | "parallel_each_other" | "touching_each_other":
             word = relation.removesuffix("_each_other").replace("parallel", "parallel to").replace("_", " ")

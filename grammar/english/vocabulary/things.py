@@ -24,7 +24,7 @@ _QUALITIES = word_set(
     " flavour flavor sound silence visibility access accessibility flexibility stability"
 )
 _ACTS = word_set(
-    "step stage phase task job action activity process operation turn move motion start beginning finish"
+    "measure delivery step stage phase task job action activity process operation turn move motion start beginning finish"
     " attempt try effort adjustment placement presentation preparation installation maintenance"
     " inspection measurement alignment orientation rotation transition conversation communication discussion"
     " interaction circulation navigation storage organisation organization consideration requirement"
@@ -46,21 +46,23 @@ _TIMES = word_set(
 )
 _DIRECTIONS = word_set(
     "left right up down upward upwards downward downwards inward inwards outward outwards forward forwards backward"
-    " backwards sideways clockwise anticlockwise counterclockwise ahead upside away"
+    " backwards sideways outside inside clockwise anticlockwise counterclockwise ahead upside away"
 )
 _UNNAMED = word_set(
     "location area placement vicinity surrounding surroundings whereabouts world distance"
     " inch inches cm mm centimetre centimeter millimetre millimeter kilometre percent o'clock"
-    " lot number bit rest majority most least dozen"
+    " lot number enough bit rest majority most least dozen"
 )
 _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
-    "area date help law company light case work support state finish use reach rest stage rule second"
+    "measure area date help law company light case work support state finish use reach rest stage rule second"
     " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
-_SELDOM_THINGS = word_set("level pitch bit")
+_STOREYS = word_set("top bottom upper lower middle lowest highest first second third")
+"""Words before *level* that make it a storey of a thing."""
+_SELDOM_THINGS = word_set("level pitch bit outside inside")
 """Such words that the ontology knows, and that are seldom things by themselves."""
 _ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude", "acy", "ability", "ibility", "logy")
 _CONCRETE = word_set(
@@ -97,19 +99,19 @@ _ADVERBS_NOT = word_set(
 _THIRD_PERSONS = word_set(
     "adds represents symbolises symbolizes signifies ensures makes gives lets seems becomes consists encourages"
     " invites improves enhances defines anchors frames completes softens complements suits varies differs depends"
-    " matters works brings draws guides leads invokes honours honors reflects means keeps"
+    " tends matters works brings draws guides leads invokes honours honors reflects means keeps"
 )
 """Verbs in the third person that are not nouns, besides those that tell a place."""
 _VERBS_OF_CLAUSES = _THIRD_PERSONS | {"includes", "contains", "requires", "creates"}
 """Verbs that no compound begins with."""
 _ONLY_VERBS = word_set(
     "kneel sit lie belong remain include contain put create ensure represent symbolise symbolize provide require become"
-    " allow prevent"
+    " allow prevent complete"
 )
 """Verbs that are not the names of things, as *hold* and *keep* are."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
-    " moving including having"
+    " including having stuffing alternating filling"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
 _OF_CLAUSES = (
@@ -155,6 +157,8 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     last = last_word(noun).rpartition("-")[2]  # 'eye-level'
     if last not in _WITHOUT_PLACE and nouns.knows(last):
         return True
+    if last == "level" and words[0] in _STOREYS:
+        return True  # 'on the bottom level'
     if last in _WITHOUT_PLACE:
         return len(words) > 1 and last in _KEPT
     return last in _CONCRETE or not last.endswith(_ENDINGS)
@@ -180,7 +184,7 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
         return True
     for place, word in enumerate(words):
         form = verb_forms().get(word)
-        third = (form is not None and form.form == "s") or word in _THIRD_PERSONS
+        third = (form is not None and form.form == "s") or word in _THIRD_PERSONS or word.endswith(("ifies", "izes"))
         third = third and place > 0 and not nouns.knows(word)
         adverb = word.endswith("ly") and len(word) > 4 and word not in _ADVERBS_NOT and not nouns.knows(word)
         if third or adverb or word in _OF_CLAUSES or word in OTHER_UNITS & _TIMES:

@@ -159,13 +159,22 @@ PUT_VERBS = word_set(
     " tie shelve stow bury hide cram slip pack feed affix anchor angle straddle"
     " hammer tap pop chuck toss fling hitch latch staple stitch peg dab smear immerse submerge dock"
     " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan return"
+    " scoot snake wheel cluster layer stash nudge transfer shift display hoist squeeze settle deposit organize organise lash"
 )
+
+PLACING_VERBS = word_set(
+    "place put store keep leave lay position arrange insert attach install hang tuck stack set stow mount fix stand"
+    " situate locate"
+)
+"""Verbs that say where things are put, which follow other commands as participles too, and whose object can be left out, because
+the text has just named it: *cut the bread and place in the basket*."""
 
 NAMED_LIKE_THINGS = word_set(
     "plant heap screw bolt glue nail tape strap spoon load thread pin slot hook press wedge clip clamp tip park group"
     " tie pack feed anchor angle top lower fit dot fill float cover position space spread stick stack pile line drop"
     " hammer tap pop staple stitch peg dab smear dock hitch latch"
     " center centre turn roll fold fan prop nest seat store rest stand set place mount slide bring"
+    " snake wheel cluster layer transfer shift display squeeze nudge"
 )
 """Commands whose verb is a noun as well: *screw the bracket to it* and *screw holes*."""
 

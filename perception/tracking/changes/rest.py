@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+import numpy as np
+
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Observation, Table
 from deixis.perception.tracking.table.reference import TABLE, Changes, Reference
@@ -15,6 +17,13 @@ MIN_OWN_PIXELS = 6
 
 MIN_VISIBLE = 0.25
 """Minimum share of the measured pixels of a thing that nothing hides, for it to have left its place."""
+
+FOOT, MIN_LIFTED_FOOT = 0.02, 0.7
+"""Height in metres of the foot of a thing, and the minimum share of its visible pixels that show what is behind it, for
+the thing to be lifted. While a bottle rises, the pixels above its foot still show bottle."""
+
+LIFTED_BY_HAND = 1.0
+"""Time in seconds after a hand was seen in which a thing may be lifted."""
 
 EXPOSED = 0.3
 """Minimum share of the points of a thing that nothing hides, for its place to be called empty or not."""
@@ -45,7 +54,7 @@ def look_at_resting(things: Things, table: Table, seen: Observation, settings: T
         visible = measured - int(count[NEARER])
         if measured < MIN_OWN_PIXELS:
             _look_once_more(thing, things, table, seen, settings)
-        elif has_left(thing, seen.changes, settings.moved):
+        elif has_left(thing, seen.changes, settings.moved) or is_lifted(thing, table.reference, seen):
             start(thing, things, table.reference)
         elif count[SAME] >= settings.doubtful * measured:
             thing.seen_at_rest(seen.at, float(count[SAME]) / max(visible, 1))
@@ -75,6 +84,37 @@ def has_left(thing: Pipeline, changes: Changes, least: float) -> bool:
     measured = int(count.sum() - count[MISSING] - count[EDGE])
     visible, left = measured - int(count[NEARER]), int(count[FARTHER] + count[COLOUR])
     return visible >= max(MIN_OWN_PIXELS, MIN_VISIBLE * measured) and left > least * visible
+
+
+def is_lifted(thing: Pipeline, reference: Reference, seen: Observation) -> bool:
+    """Return True if the place of the foot of a thing shows what is behind it, although the rest looks unchanged.
+
+    Parameters
+    ----------
+    thing
+        The thing, at rest.
+    reference
+        The table at rest.
+    seen
+        The frame.
+
+    Returns
+    -------
+    bool
+        False for a flat thing, for one whose foot is hidden, and if no hand has been seen for a while.
+    """
+    from deixis.perception.tracking.kernels import COLOUR, FARTHER, SAME
+
+    count = seen.changes.counts[thing.slot]
+    if seen.at - seen.hand_at > LIFTED_BY_HAND or count[FARTHER] + count[COLOUR] < MIN_OWN_PIXELS:
+        return False
+    bottom, top = np.sort(thing.placed_corners[:, 2])[[0, -1]]
+    if top - bottom < 2 * FOOT:
+        return False
+    own = np.flatnonzero(reference.owner == thing.slot)
+    state = seen.changes.state.ravel()[own[reference.points(own, seen.view)[:, 2] < bottom + FOOT]]
+    left = int(((state == FARTHER) | (state == COLOUR)).sum())
+    return left >= MIN_OWN_PIXELS and left > MIN_LIFTED_FOOT * (left + int((state == SAME).sum()))
 
 
 def is_laid_anew(things: Collection[Pipeline], changes: Changes, least: float) -> bool:

@@ -17,6 +17,9 @@ from deixis.perception.tracking.things.pipeline import Pipeline
 CONFIRM_AFTER = 0.3
 """Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
 
+AFTER_HAND = 0.6
+"""Time in seconds since a hand was in view after which a thing that was followed is completed."""
+
 AGAIN_AFTER = 1.0
 """Time in seconds after which a moving camera may show the other end of a thing that something partly hides."""
 
@@ -110,9 +113,10 @@ def _next(things: Things, reference: Reference, seen: Observation, settings: Tra
 def _is_clear(thing: Pipeline, reference: Reference, seen: Observation) -> bool:
     """Return True if nothing moves over the table, or only a hand that is far from a thing in the image.
 
-    A thing that was followed has pixels that a hand may have spoilt: it is not clear while a hand is in view.
+    A thing that was followed has pixels that a hand may have spoilt or hidden: it is clear when they have been steady
+    for a while since a hand was in view.
     """
-    if seen.hand_at < seen.at:
+    if seen.at - seen.hand_at > (0.0 if thing.first_rest else AFTER_HAND):
         return True
     own = reference.owner == thing.slot
     rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import turned_axes
-from deixis.perception.tracking.completion.missing_parts import FLAT, MIN_BEFORE, MIN_SLENDERNESS
+from deixis.perception.tracking.completion.missing_parts import FLAT, MIN_BEFORE, MIN_SLENDERNESS, NEAREST
 from deixis.perception.tracking.frames.image import TableView
 from deixis.perception.tracking.table.reference import Reference
 from deixis.perception.tracking.things.pipeline import Pipeline
@@ -22,9 +22,10 @@ from deixis.perception.tracking.things.pipeline import Pipeline
 STEP = 0.003
 """Distance in metres of the places beyond an end at which it is looked for what is seen there."""
 
-MAX_GAP = 0.005
-"""Distance in metres from an end, or from the last pixel that shows the thing, within which what hides it begins. Where
-the table is seen between the two, the end is seen."""
+MAX_GAP = 0.008
+"""Distance in metres from an end, or from the last pixel that shows the thing, within which what hides it begins: two
+pixels, which the noise of the table may take from a blade. Where more of the table is seen between the two, the end is
+seen."""
 
 END, ACROSS = 0.01, (0.1, 0.5, 0.9)
 """Length in metres of the end of a thing whose points say where across its box it goes on, and the quantiles of these
@@ -32,9 +33,6 @@ points at which that is looked at."""
 
 MAX_BEYOND = 0.3
 """Largest distance in metres beyond an end at which a thing is looked for."""
-
-NEAREST = np.float32(1e-6)
-"""Depth in metres of a surface that is before all places."""
 
 TOO_WIDE = 0.006
 """Width in metres by which a thing may seem wider than its kind is, for noise."""

@@ -10,11 +10,13 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.outline import oriented_box
 from deixis.perception.scene import turned_axes
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
 from deixis.perception.tracking.things.likeness import likeness
 from deixis.perception.tracking.things.pipeline import Pipeline
+from deixis.perception.tracking.things.rectangle import is_rectangular
 
 FLAT = 0.04
 """Height in metres below which a thing may have parts that are lost in the noise of the table; a spoon is 0.03 high."""
@@ -65,6 +67,13 @@ MIN_IN_LINE = 0.6
 
 MIN_INCLUDED = 0.9
 """Minimum share of the points of a piece within the box of its thing."""
+
+GRID, MIN_FILLED = 30, 0.95
+"""Number of places along each side of a rectangle at which it is looked for, and the minimum share of them that show it
+or are hidden."""
+
+NEAREST = np.float32(1e-6)
+"""Depth in metres of a surface that is before all places."""
 
 MAX_LENGTH = 0.28
 """Largest length in metres of a thing and a piece of it together."""
@@ -162,7 +171,7 @@ class FlatThing:
     ) -> None:
         from scipy.ndimage import binary_dilation
 
-        self._thing, self._shape, self._views = thing, reference.owner.shape, views
+        self._thing, self._reference, self._shape, self._views = thing, reference, reference.owner.shape, views
         own = reference.owner == thing.slot
         rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
         self.is_seen = thing.oriented.extents[2] < FLAT and len(rows) > 0
@@ -284,8 +293,9 @@ class FlatThing:
         Returns
         -------
         list of Pipeline
-            Shorter flat things in its line and of its colour that have not moved since they came. They came with it and
-            are smaller or lie within its box, or one of the two came into view without being set down.
+            Shorter flat things of its colour that have not moved since they came, and that lie in its line or complete
+            it as a rectangle. They came with it and are smaller or lie within its box, or one of the two came into view
+            without being set down.
         """
         if not self.is_seen:
             return []
@@ -298,6 +308,9 @@ class FlatThing:
             # of a thing that was hidden, any part may be hidden now
             smaller = revealed or own.sum() <= self._seed.sum() or self._includes(thing)
             fits = together and shorter and own.any() and smaller and thing.oriented.extents[2] < FLAT
+            if fits and self._is_rectangle_with(thing, own):
+                found.append(thing)
+                continue
             if not fits or not any(self._leads_to(own, line) for line in (self._line, self._line_to(thing))):
                 continue
             both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
@@ -311,6 +324,22 @@ class FlatThing:
         """Return True if most points of a piece lie within the box of the thing."""
         points = piece.placed_points
         return bool(self._thing.contains(points, self._thing.settings.margin).mean() > MIN_INCLUDED)
+
+    def _is_rectangle_with(self, piece: Pipeline, own: Mask) -> bool:
+        """Return True if a thing and a piece of its colour show a rectangle of which something hides all the rest."""
+        if self._alike[own].mean() < MIN_IN_LINE:
+            return False
+        points = np.concatenate([self._thing.placed_points, piece.placed_points])
+        box = oriented_box(points, self._thing.settings.detection.outlines)
+        if not is_rectangular(points, box):
+            return False
+        sides = np.array(box.extents[:2]) - 2 * BEYOND
+        steps = [np.linspace(-side / 2, side / 2, GRID) for side in sides]
+        grid = np.stack([*(axis.ravel() for axis in np.meshgrid(*steps)), np.zeros(GRID**2)], axis=1)
+        places = np.array(box.centre) + grid @ turned_axes(box.yaw)
+        theirs = np.isin(self._reference.owner, (self._thing.slot, piece.slot))
+        before = np.where(theirs, NEAREST, self._reference.depth)
+        return bool(self._view.hides(places, before, MIN_BEFORE).mean() > MIN_FILLED)
 
     def _leads_to(self, piece: Mask, line: Mask) -> bool:
         """Return True if a piece has the thing's colour and lies in a line that nothing seen interrupts."""

@@ -6,6 +6,7 @@ lies on a plate. The mean of the frames since then has less noise.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
@@ -132,7 +133,7 @@ def correct(
     """
     reference, of = table.reference, shown(whole.labels, cloud, settings.stride)
     matched = matches(of, len(whole.boxes), image, view.back, reference, list(things))
-    merged = []
+    merged, parts = [], defaultdict[int, list[Pipeline]](list)
     for thing in things:
         if thing in matched.values():
             continue
@@ -142,6 +143,7 @@ def correct(
         own = of[reference.owner == thing.slot]
         if len(own) and thing.state == "seen" and (own >= 0).mean() >= 0.5:
             merged.append(thing)
+            parts[int(np.bincount(own[own >= 0]).argmax())].append(thing)
     things.leave(merged)
     for thing in merged:
         reference.take(thing.slot, None, set())
@@ -155,6 +157,8 @@ def correct(
                 model = model_on_table(whole, cloud, points, k, table, view.back, settings)
                 thing = remodelled(thing, model, things, image, view, at, settings)
                 modelled.append(thing)
+            if parts[k]:
+                thing.take_name(parts[k], at)
         elif table.outline.is_crossed_by(image.places(pixels, view.back)) or join_piece(
             pixels, things, table, image, view, settings
         ):

@@ -83,7 +83,8 @@ class Things:
         if not thing.active:
             new.rest = thing.rest
         moves = thing.active and float(np.linalg.norm(new.pose[:3, 3] - thing.pose[:3, 3])) > self._settings.still
-        new.since, new.at = (new.at if moves else thing.since), thing.at
+        new.since = new.at if moves else thing.since
+        new.continue_from(thing)
         self._all[self._all.index(thing)] = new
         return new
 

@@ -15,6 +15,7 @@ from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Table
+from deixis.perception.tracking.things.rectangle import is_rectangular
 from deixis.perception.tracking.things.revolution import circle_around
 
 MIN_TURN = np.deg2rad(3.0)
@@ -121,7 +122,7 @@ def model_of(
     change: NDArray[np.float64],
     outlines: OutlineSettings,
 ) -> Model:
-    """Return the model of one object of a detection; that of an upright round thing includes its hidden back.
+    """Return the model of one object of a detection, with the hidden back or corners of a round or rectangular thing.
 
     The detection's own boxes may hold more than the points of the object, those of the table beside it or a hidden part
     of a circle. For an elongated object, only its points count.
@@ -165,6 +166,8 @@ def model_of(
         corners = circle.enclosed_by(np.stack([middle - half, middle + half]))
         middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
         around = oriented_box(own, outlines, circle)
+    elif is_rectangular(own, around):  # a corner may be hidden
+        middle, half = np.array(around.centre), np.ptp(around.corners, axis=0) / 2
     pose = np.eye(4)
     pose[:3, 3] = middle
     oriented = OrientedBox(tuple((np.array(around.centre) - middle).tolist()), around.yaw, around.extents)
@@ -177,8 +180,9 @@ def extended(
 ) -> Model:
     """Return the model of a thing with more points, and with the boxes around all of them.
 
-    The box of an upright round thing keeps its hidden back, such as that of a mug whose handle comes into view, and a
-    thing that stands on the table keeps its foot.
+    The box of an upright round thing keeps its hidden back, such as that of a mug whose handle comes into view, that of
+    a flat rectangular thing its hidden corners, and a thing that stands on the table keeps its foot. The sides of the
+    upright box lie along the axes of the thing, which may have turned since it was first seen.
 
     Parameters
     ----------
@@ -196,30 +200,35 @@ def extended(
     Model
         Model whose origin is the middle of the new box.
     """
-    turn = model.pose[:3, :3]
-    own = model.cloud.points.astype(np.float64) @ turn.T + model.pose[:3, 3]
+    turn, start = model.pose[:3, :3], model.pose[:3, 3]
+    own = model.cloud.points.astype(np.float64) @ turn.T + start
     everything = np.concatenate([own, points])
     circle = circle_around(everything) or circle_around(own)
-    box = upright_box(everything, settings, circle)
     around = oriented_box(everything, settings, circle)
-    bottom = max(float(model.pose[2, 3] - model.half[2]), 0.0)
-    box[0, 2], around = min(box[0, 2], bottom), _down_to(bottom, around)
+    outline = around.corners if circle is None and is_rectangular(everything, around) else everything[:0]
+    bottom = max(float(start[2] - model.half[2]), 0.0)
+    around = _down_to(bottom, around)
+
+    def along_own_axes(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return places relative to the origin in plan, along the sides of the box, which may be turned."""
+        return np.asarray((places - start) @ turn + np.array([0.0, 0.0, start[2]]))
+
+    rim = None if circle is None else Circle(circle.centre - start[:2], circle.radius).turned(turn[:2, :2].T)
+    local = along_own_axes(everything)
+    box = upright_box(local, settings, rim)
+    for corner in along_own_axes(outline)[:, :2]:
+        box[0, :2], box[1, :2] = np.minimum(box[0, :2], corner), np.maximum(box[1, :2], corner)
+    box[0, 2] = min(box[0, 2], bottom)
     middle = box.mean(axis=0)
-    yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
-    local = (everything - middle) @ turn
-    if yaw != 0:  # the sides of the box lie along the thing's own axes
-        box = np.stack([local.min(axis=0), local.max(axis=0)])
-        box[0, 2] = min(box[0, 2], bottom - middle[2])
-        if circle is not None:
-            box = Circle(circle.centre - middle[:2], circle.radius).turned(turn[:2, :2].T).enclosed_by(box)
+    pose = model.pose.copy()
+    pose[:3, 3] = start + turn @ (middle - (0.0, 0.0, start[2]))
     tints = None
     if model.cloud.colours is not None:
         tints = np.concatenate([model.cloud.colours, np.clip(colours, 0, 255).astype(np.uint8)])
-    pose = model.pose.copy()
-    pose[:3, 3] = middle
-    centre = tuple(((np.array(around.centre) - middle) @ turn).tolist())
+    yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+    centre = tuple(((np.array(around.centre) - pose[:3, 3]) @ turn).tolist())
     oriented = OrientedBox(centre, around.yaw - yaw, around.extents)
-    return Model(PointCloud(local.astype(np.float32), tints), (box[1] - box[0]) / 2, oriented, pose)
+    return Model(PointCloud((local - middle).astype(np.float32), tints), (box[1] - box[0]) / 2, oriented, pose)
 
 
 def standing(model: Model) -> Model:

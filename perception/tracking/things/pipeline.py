@@ -23,6 +23,7 @@ from deixis.perception.tracking.table.reference import Beneath
 from deixis.perception.tracking.things.likeness import SHADE_SPREAD, likeness
 from deixis.perception.tracking.things.model import Model, extended, standing
 from deixis.perception.tracking.things.particles import Estimate, ParticleFilter
+from deixis.perception.tracking.things.revolution import revolution_around
 from deixis.perception.tracking.things.sight import Sight, quaternion
 
 if TYPE_CHECKING:
@@ -36,6 +37,11 @@ MIN_POINTS_BEYOND = 5
 
 MIN_BETTER = 0.02
 """Minimum gain of score for which the pose of a thing at rest is corrected."""
+
+MIN_TURNED, HANDLE_SEEN = np.deg2rad(20.0), 0.5
+"""Minimum angle in radians between the supposed and the seen direction of a handle at which a thing is turned, and the
+share of the points of the handle that agree, and that nothing hides, above which it is seen where it is supposed to be.
+"""
 
 FAR_SCORE = 0.06
 """Penalty of a place that is ``jump`` or farther from the predicted one. Without it, a place where something may hide
@@ -278,6 +284,16 @@ class Pipeline:
         lengths = zip(self._middles, times, times[1:], strict=False)
         return sum(end - at for (_, middle), at, end in lengths if np.linalg.norm(middle - place) <= NEAR)
 
+    def continue_from(self, before: Pipeline) -> None:
+        """Remember since when an earlier pipeline of the thing has known it, and where.
+
+        Parameters
+        ----------
+        before
+            The earlier pipeline, which has ended.
+        """
+        self.at, self._middles = before.at, before._middles + self._middles
+
     def take_name(self, parts: Sequence[Pipeline], at: float) -> None:
         """Take the name of one of the parts that were merged into the thing, if it was known longer by that name.
 
@@ -433,8 +449,9 @@ class Pipeline:
 
         While a thing moves, a place that shows more of its points is better than one that hides them, and the points
         of one part of a thing of one colour agree as well with another part. A pose therefore slides away from a hand,
-        or from the border of the image, that hides an edge. At rest, only the points that nothing hides count, and all
-        that shows the thing must be within its box. The thing moves along the table and turns about the vertical.
+        or from the border of the image, that hides an edge; and a mug turns away from its handle while the hand hides
+        it. At rest, only the points that nothing hides count, all that shows the thing must be within its box, and its
+        handle is where it is seen. The thing moves along the table and turns about the vertical.
 
         Parameters
         ----------
@@ -448,12 +465,47 @@ class Pipeline:
             Standard deviation of depths at one metre.
         """
         sight = Sight(self._points, self._colours, image, view, taken, noise)
-        if sight.agreement(self.pose[:3, 3], quaternion(self.pose)).exposed < MIN_ALIGNED:
+        if sight.agreement(self.pose[:3, 3], quaternion(self.pose)).exposed >= MIN_ALIGNED:
+            pose, gain = sight.shifted(self.pose, self.oriented, self._few(own))
+            if gain > MIN_BETTER:
+                self.pose = pose
+        self._turn_to_handle(image, view, taken, own, noise)
+        if self.pose is not self._rest:
+            self._rest = self.pose
+            self._filter.reset(self.pose)
+
+    def _turn_to_handle(
+        self,
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        own: NDArray[np.float64],
+        noise: float,
+    ) -> None:
+        """Turn a round thing so that its handle has the direction that points (k, 3) show.
+
+        All directions of the body agree with the frame, also those in which another side of it is seen than before. The
+        thing stays as it is if the handle is seen where it is supposed to be.
+        """
+        points = self.placed_points
+        known = revolution_around(points)
+        supposed = None if known is None else known.handle(points)
+        if known is None or supposed is None:
             return
-        pose, gain = sight.shifted(self.pose, self.oriented, self._few(own))
-        if gain > MIN_BETTER:
-            self.pose = self._rest = pose
-            self._filter.reset(pose)
+        seen = known.moved_to(own)
+        direction = seen.handle(own)
+        if direction is None or np.cos(direction - supposed) > np.cos(MIN_TURNED):
+            return
+        handle, tints = known.is_handle(points), self.cloud.colours
+        colours = np.zeros((int(handle.sum()), 3)) if tints is None else tints[handle].astype(np.float64)
+        there = Sight(self.cloud.points[handle].astype(np.float64), colours, image, view, taken, noise)
+        agreement = there.agreement(self.pose[:3, 3], quaternion(self.pose))
+        if agreement.fit > HANDLE_SEEN and agreement.exposed > HANDLE_SEEN:
+            return
+        turn = turned_axes(direction - supposed).T
+        self.pose = self.pose.copy()
+        self.pose[:3, :3] = turn @ self.pose[:3, :3]
+        self.pose[:2, 3] = turn[:2, :2] @ (self.pose[:2, 3] - known.centre) + seen.centre
 
     def laid(
         self,

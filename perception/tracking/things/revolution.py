@@ -1,6 +1,8 @@
-"""Find the hidden back of an upright round thing, such as a bottle, from the arcs of its front."""
+"""Find the hidden back of an upright round thing, such as a bottle, from the arcs of its front, and its handle."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,11 +31,101 @@ SECTORS, MIN_SECTORS = 36, 11
 """Number of sectors of a circle, and the minimum number of them in which points must be."""
 
 
+SEARCH = (0.02, 0.005), (0.005, 0.001)
+"""Distances in metres to all sides in which an axis is looked for, and the distances of those that are tried."""
+
+HANDLE_BEYOND = 0.008
+"""Distance in metres from the surface of revolution beyond which a point shows a handle."""
+
+MIN_HANDLE, HANDLE_WIDTH, MIN_HANDLE_SHARE = 8, np.deg2rad(30.0), 0.6
+"""Minimum number of points of a handle, the largest angle in radians of their directions from that of the middle one,
+and their minimum share of all points that stand out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Revolution:
+    """Surface of revolution about a vertical axis at ``centre`` (2,): the radius (s,) of each slice from ``bottom``.
+
+    Slices without enough points have the radius 0.
+    """
+
+    centre: NDArray[np.float64]
+    bottom: int
+    radius: NDArray[np.float64]
+
+    @property
+    def widest(self) -> Circle:
+        """Circle of the widest slice."""
+        return Circle(self.centre, float(np.quantile(self.radius[self.radius > 0], 0.9)))
+
+    def _off(self, points: NDArray[np.float64], centre: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distances (n,) of points (n, 3) from the surface about an axis (2,), 0 where it is not known."""
+        of = (np.floor(points[:, 2] / SLICE).astype(np.int64) - self.bottom).clip(0, len(self.radius) - 1)
+        away = np.linalg.norm(points[:, :2] - centre, axis=1) - self.radius[of]
+        return np.where(self.radius[of] > 0, away, 0.0)
+
+    def moved_to(self, points: NDArray[np.float64]) -> Revolution:
+        """Return the surface about the axis, of those nearby, about which most points lie on it.
+
+        Parameters
+        ----------
+        points
+            Points of the thing, shape (n, 3), in metres.
+
+        Returns
+        -------
+        Revolution
+            Surface with equal radii.
+        """
+        centre = self.centre
+        for reach, step in SEARCH:
+            shifts = np.arange(-reach, reach + step / 2, step)
+            centres = centre + np.stack(np.meshgrid(shifts, shifts), axis=-1).reshape(-1, 2)
+            on = [int((np.abs(self._off(points, each)) < MAX_OFF).sum()) for each in centres]
+            best = np.flatnonzero(np.array(on) == max(on))
+            centre = centres[best].mean(axis=0)
+        return replace(self, centre=centre)
+
+    def is_handle(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return a mask of the points that stand out from the surface.
+
+        Parameters
+        ----------
+        points
+            Points of the thing, shape (n, 3), in metres.
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (n,).
+        """
+        return np.asarray(self._off(points, self.centre) > HANDLE_BEYOND)
+
+    def handle(self, points: NDArray[np.float64]) -> float | None:
+        """Return the direction of the points that stand out from the surface.
+
+        Parameters
+        ----------
+        points
+            Points of the thing, shape (n, 3), in metres.
+
+        Returns
+        -------
+        float or None
+            Angle about the axis in radians; None if few points stand out, or not on one side.
+        """
+        out = (points[:, :2] - self.centre)[self.is_handle(points)]
+        if len(out) < MIN_HANDLE:
+            return None
+        directions = out / np.linalg.norm(out, axis=1, keepdims=True)
+        beside = directions @ directions.T > np.cos(HANDLE_WIDTH)
+        most = beside[beside.sum(axis=1).argmax()]
+        x, y = directions[most].mean(axis=0)
+        return float(np.arctan2(y, x)) if most.sum() >= max(MIN_HANDLE, MIN_HANDLE_SHARE * len(out)) else None
+
+
 def circle_around(points: NDArray[np.float64]) -> Circle | None:
     """Return the circle in plan that an upright round thing fills.
-
-    The circles of all slices have one centre, by linear least squares (Kasa 1976) without the points that are off.
-    Noise makes the circles of narrow arcs too small, never too large.
 
     Parameters
     ----------
@@ -45,8 +137,29 @@ def circle_around(points: NDArray[np.float64]) -> Circle | None:
     Circle or None
         Circle of the widest slice; None if the thing is not round, or too flat to tell.
     """
+    found = revolution_around(points)
+    return None if found is None else found.widest
+
+
+def revolution_around(points: NDArray[np.float64]) -> Revolution | None:
+    """Return the surface of revolution of an upright round thing.
+
+    The circles of all slices have one centre, by linear least squares (Kasa 1976) without the points that are off.
+    Noise makes the circles of narrow arcs too small, never too large.
+
+    Parameters
+    ----------
+    points
+        Points of the thing, shape (n, 3), in the frame of the table, in metres.
+
+    Returns
+    -------
+    Revolution or None
+        Axis, and the radii of the slices; None if the thing is not round, or too flat to tell.
+    """
     of = np.floor(points[:, 2] / SLICE).astype(np.int64)
-    of -= of.min(initial=0)
+    bottom = int(of.min(initial=0))
+    of -= bottom
     count = np.bincount(of)
     kept = (count >= MIN_SLICE_POINTS)[of]
     if (count >= MIN_SLICE_POINTS).sum() < MIN_SLICES:
@@ -69,7 +182,7 @@ def circle_around(points: NDArray[np.float64]) -> Circle | None:
     misfit = float(np.sqrt(np.mean(off[kept] ** 2)))
     angle = np.arctan2(*(plan - centre)[kept].T)
     sectors = len(np.unique(np.floor(angle * SECTORS / (2 * np.pi))))
-    widest = float(np.quantile(radius[count >= MIN_SLICE_POINTS], 0.9))
-    if misfit > MAX_MISFIT or sectors < MIN_SECTORS or not 0 < widest < MAX_RADIUS:
+    found = Revolution(np.asarray(centre, np.float64), bottom, np.where(count >= MIN_SLICE_POINTS, radius, 0.0))
+    if misfit > MAX_MISFIT or sectors < MIN_SECTORS or not 0 < found.widest.radius < MAX_RADIUS:
         return None
-    return Circle(np.asarray(centre, np.float64), widest)
+    return found

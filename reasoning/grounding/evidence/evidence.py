@@ -228,9 +228,13 @@ class Evidence:
         return np.where(self.allowed, total, 0.0)
 
     @property
+    def of_kinds(self) -> NDArray[np.float64]:
+        """Log-likelihood ratios by size and colour, shape (n1, n2)."""
+        return self.sizes if self.colours is None else self.sizes + self.colours
+
+    @property
     def _of_things(self) -> NDArray[np.float64]:
-        total: NDArray[np.float64] = self.labels + self.sizes
-        return total if self.colours is None else total + self.colours
+        return self.labels + self.of_kinds
 
     @cached_property
     def _claimed(self) -> ClaimTables | None:

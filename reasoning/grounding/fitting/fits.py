@@ -108,7 +108,7 @@ def likeliest_powers(
 
     if right.all() or not right.any():
         raise SettingError("`right` must have right and wrong pairs; give both")
-    design = np.array([(one.facts, -one.chance, one.kinds) for one in pairs])
+    design = np.array([one.terms for one in pairs])
     share = np.where(right, 0.5 / right.sum(), 0.5 / (~right).sum()) if weights is None else weights / weights.sum()
 
     def loss(powers: Array) -> tuple[float, Array]:

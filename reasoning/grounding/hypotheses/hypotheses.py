@@ -8,14 +8,18 @@ information that the facts could give beyond telling the things apart: the sum o
 table, less the entropy of the maps without facts, and at least 0.
 
     C                        = M + CHANCE_EXCESS sqrt(M)
-    log weight of a side     = log prior + FACTS_POWER (log Z - log U)
+    log weight of a side     = log prior + FACTS_POWER (log Z - log U + L) - KINDS_POWER L
     log weight of another    = log prior + CHANCE_SHARE C - KINDS_POWER min(0, log U - log U0 + KINDS_SLACK n1)
 
 C has a root because Z is dominated by the best of many maps, whose excess over the mean grows as the standard deviation
 of a sum of facts does. It matters for short descriptions, which the best map in another scene satisfies more easily.
 
-U0 is U with the costs of leaving objects out alone; n1 is the number of objects. Where the user pointed out an object,
-or a label without error names it, the description is of this scene.
+U0 is U with the costs of leaving objects out alone; n1 is the number of objects. L is the loss of kinds: the evidence
+of sizes, colours and absence that the maps lose because of the facts, as the difference of its means over all maps, and
+at least 0. Z contains this loss. It is taken out of the likelihood of the facts and counts with the power of kinds,
+because sizes are independent evidence and facts are not: if things are at shuffled places, many facts hold of things of
+other kinds than the described ones. Where the user pointed out an object, or a label without error names it, the
+description is of this scene.
 
 The power of the facts is below 1 because they are treated as independent and are not: a place that satisfies one fact
 often satisfies others. :mod:`deixis.reasoning.grounding.fitting.fits` fits the powers to right and wrong pairs of
@@ -45,6 +49,7 @@ from deixis.reasoning.grounding.matching.posterior.permanents import (
     entropy_without_facts,
     log_prior,
     log_sum_without_facts,
+    mean_without_facts,
 )
 from deixis.reasoning.grounding.matching.posterior.posterior import BOUND_CELLS, Posterior, log_sum_bound, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
@@ -80,21 +85,29 @@ class FitEvidence:
     Attributes
     ----------
     facts
-        Log-likelihood ratio of the facts given kinds and labels, log Z - log U.
+        Log-likelihood ratio of the facts given kinds and labels, log Z - log U + L.
     most
         Upper bound M of that ratio.
     kinds
         Log-likelihood ratio of kinds and labels against chance, plus a slack, at most 0.
+    loss
+        Loss L of kinds in the maps that satisfy the facts, at least 0.
     """
 
     facts: float
     most: float
     kinds: float
+    loss: float = 0.0
 
     @property
     def chance(self) -> float:
         """Measure C, in nats, of how well the facts fit a scene that they do not describe."""
         return self.most + CHANCE_EXCESS * math.sqrt(self.most)
+
+    @property
+    def here(self) -> float:
+        """Log-likelihood of this scene, with the fitted powers."""
+        return FACTS_POWER * self.facts - KINDS_POWER * self.loss
 
     @property
     def beside(self) -> float:
@@ -104,7 +117,12 @@ class FitEvidence:
     @property
     def log_odds(self) -> float:
         """Contribution of the evidence to the log-odds that the description is of this scene."""
-        return FACTS_POWER * self.facts - self.beside
+        return self.here - self.beside
+
+    @property
+    def terms(self) -> tuple[float, float, float]:
+        """Factors of the three powers in the log-odds: of facts, of chance, and of kinds."""
+        return self.facts, -self.chance, self.kinds - self.loss
 
 
 OPPOSITE_PRIOR, BESIDE_PRIOR, MIRROR_PRIOR = 0.001, 0.0002, 0.001
@@ -241,16 +259,19 @@ def weigh(
     alone = _log_sum([weight + log_sum_without_facts(known.without_facts) for weight, known in readings])
     most = float(problem.tables.max(axis=(1, 2), initial=0.0)[problem.kinds].sum()) if len(problem.ends) else 0.0
     most = max(0.0, most - entropy_without_facts(evidence.without_facts))
+    usual = _kinds_without_facts(evidence)
+    loss = max(0.0, usual - first.kinds)
     fit = FitEvidence(
-        first.log_total - alone,
+        first.log_total - alone + loss,
         most,
         min(0.0, alone - log_prior(evidence.without_facts) + KINDS_SLACK * len(problem.absent)),
+        loss,
     )
     elsewhere = math.log(another / (1 - another)) + fit.beside
     if evidence.present.any():  # an object that was pointed out is of this scene
         elsewhere = -math.inf
     maps = [first]
-    weights = [math.log(sides[0].prior) + FACTS_POWER * fit.facts]
+    weights = [math.log(sides[0].prior) + fit.here]
     rest = list(zip(sides[1:], seen[1:] if seen else (None,) * len(sides[1:]), strict=True))
     for number, (side, known) in enumerate(rest):
         there = None
@@ -265,8 +286,11 @@ def weigh(
             with suppress(OutOfTimeError):
                 there = _maps_of(turned, None, left, first.log_total - first.log_best, *levels)
         maps.append(replace(first, found=None) if there is None else there)
-        facts_there = CHANCE_SHARE * fit.chance if there is None else FACTS_POWER * (there.log_total - alone)
-        weights.append(math.log(side.prior) + facts_there)
+        likelihood = CHANCE_SHARE * fit.chance
+        if there is not None:
+            loss = max(0.0, usual - there.kinds)
+            likelihood = FitEvidence(there.log_total - alone + loss, most, fit.kinds, loss).here
+        weights.append(math.log(side.prior) + likelihood)
     weights.append(elsewhere)
     shares = np.exp(np.array(weights) - _log_sum(weights)).tolist()
     by_labels, labelled = _by_labels(evidence)
@@ -280,13 +304,15 @@ class _Maps:
     """Maps of a description in a scene as seen from one side, over both readings of the labels.
 
     ``evidence`` is that of the likelier reading, ``log_best`` the value of its best map. ``found`` is the posterior,
-    None where the maps are not listed.
+    None where the maps are not listed. ``kinds`` is the mean evidence of sizes, colours and absence, infinite where it
+    is not known.
     """
 
     evidence: Evidence
     log_best: float
     log_total: float
     found: Posterior | None
+    kinds: float = math.inf
 
 
 def _maps_of(
@@ -308,7 +334,7 @@ def _maps_of(
         bounds = [weight + _bound(one, negligible - parted - weight) for weight, one in readings]
         if _log_sum(bounds) <= negligible:
             return _Maps(replace(evidence), -math.inf, -math.inf, None)  # a copy without the cached tables
-    seen: list[tuple[float, float, Evidence, Posterior | None]] = []
+    seen: list[tuple[float, float, Evidence, Posterior | None, float]] = []
     for weight, known in readings:
         if seen:
             enough = _log_sum([total for _, total, *_ in seen]) + math.log(NEGLIGIBLE) - weight
@@ -319,19 +345,37 @@ def _maps_of(
         if best is None:
             best = scalable(problem, deadline.share(0.5), effort=SEARCH_EFFORT).assignment
         value = problem.value(best)
-        found, total = None, value + spread
+        found, total, kinds = None, value + spread, math.inf
         enough = max([not_listed, *(one[1] + math.log(NOT_LISTED) for one in seen)])
         if weight + total >= enough and (not seen or not deadline.passed):
             found = posterior(problem, deadline.share(POSTERIOR_SHARE), start=best, chains=not known.memory_limited)
-            total = log_total(found, value)
+            total, kinds = log_total(found, value), _kinds_with_facts(known, found)
             found = discounted(problem, found, deadline)
             if known.whole is not None:
                 found, total = _of_shortlist(found, known.whole), total + _log_outside(known)
-        seen.append((weight + value, weight + total, known, found))
+        seen.append((weight + value, weight + total, known, found, kinds))
     together = _log_sum([total for _, total, *_ in seen])
-    parts = [(math.exp(total - together), found) for _, total, _, found in seen if found is not None]
-    log_best, _, known, _ = max(seen, key=lambda one: one[0])
-    return _Maps(known, log_best, together, _mixed(parts) if parts else None)
+    listed = [(math.exp(total - together), found, kinds) for _, total, _, found, kinds in seen if found is not None]
+    log_best, _, known, *_ = max(seen, key=lambda one: one[0])
+    if not listed:
+        return _Maps(known, log_best, together, None)
+    kinds = sum(share * of_maps for share, _, of_maps in listed) / sum(share for share, *_ in listed)
+    return _Maps(known, log_best, together, _mixed([(share, found) for share, found, _ in listed]), kinds)
+
+
+def _kinds_with_facts(evidence: Evidence, found: Posterior) -> float:
+    """Return the mean evidence of sizes, colours and absence over the maps; infinite for a shortlist."""
+    if evidence.whole is not None:
+        return math.inf
+    values = np.column_stack([np.where(evidence.allowed, evidence.of_kinds, 0.0), evidence.absent])
+    return float((found.marginals * values).sum())
+
+
+def _kinds_without_facts(evidence: Evidence) -> float:
+    """Return the mean evidence of sizes, colours and absence over the maps without facts."""
+    if evidence.whole is not None or not evidence.of_kinds.any():
+        return -math.inf
+    return mean_without_facts(evidence.without_facts, evidence.of_kinds)
 
 
 def _bound(evidence: Evidence, enough: float) -> float:

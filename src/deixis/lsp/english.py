@@ -1,4 +1,4 @@
-"""A text in English as an editor holds it: warnings, completion, and the facts of each sentence."""
+"""A text in English as an editor holds it: warnings, completion, renaming, and the facts of each sentence."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ from deixis.grammar.script import Script
 from deixis.lsp.completion import MAX_COMPLETIONS, MAX_WORDS, Completion, Role
 from deixis.lsp.diagnostics import LINT_TIME_LIMIT, MAX_WARNINGS, Problem
 from deixis.lsp.document import READ_TIME_LIMIT
-from deixis.lsp.edits import Edit, Fix
+from deixis.lsp.edits import Edit, Fix, RenameError
+from deixis.lsp.hover import HOVER_TIME_LIMIT, MAX_FACTS_SHOWN, kind_and_size, what_follows
 from deixis.ontology.graph.facts import Source
+from deixis.ontology.inflection import plural
 
 
 @dataclass(frozen=True)
@@ -28,10 +30,11 @@ class EnglishText:
     @cached_property
     def lines(self) -> list[str]:
         """Lines of the text without their ends."""
-        return self._plain.split("\n")
+        return self.plain.split("\n")
 
     @cached_property
-    def _plain(self) -> str:
+    def plain(self) -> str:
+        """The text with line feeds as the ends of lines."""
         return self.text.replace("\r\n", "\n")
 
     @cached_property
@@ -45,7 +48,7 @@ class EnglishText:
         from deixis.grammar.english.reader import read_english
 
         try:
-            return read_english(self._plain, self.file, deadline=Deadline.after(READ_TIME_LIMIT))
+            return read_english(self.plain, self.file, deadline=Deadline.after(READ_TIME_LIMIT))
         except (ScriptError, ScriptTimeError) as error:
             return error
 
@@ -136,9 +139,9 @@ def english_completions(document: EnglishText, line: int, column: int) -> list[C
     found: dict[str, Completion] = {}
     for start in _starts(before):
         typed = before[start:].casefold()
-        if not typed.strip():
-            continue
         for text, role, detail in _words(document, typed):
+            if not typed and role is not Role.NAME:
+                break
             if text.casefold().startswith(typed) and text.casefold() != typed:
                 found.setdefault(text, Completion(text, role, start + 1, detail))
                 if len(found) >= MAX_COMPLETIONS:
@@ -147,9 +150,14 @@ def english_completions(document: EnglishText, line: int, column: int) -> list[C
 
 
 def _starts(before: str) -> Iterator[int]:
-    """Yield the columns, from 0, at which the phrase that is being typed may begin: the longest phrase first."""
+    """Yield the columns, from 0, at which the phrase that is being typed may begin: the longest phrase first.
+
+    After an article and a blank, a name may begin at the cursor.
+    """
     words = [match.start() for match in re.finditer(r"[^\s,;.()\"]+", before)]
     yield from words[-MAX_WORDS:]
+    if re.search(r"\b(?:the|a|an)\s+$", before, re.IGNORECASE):
+        yield len(before)
 
 
 def _words(document: EnglishText, typed: str) -> Iterator[tuple[str, Role, str]]:
@@ -173,8 +181,136 @@ def _words(document: EnglishText, typed: str) -> Iterator[tuple[str, Role, str]]
         yield colour.label, Role.COLOUR, "colour"
 
 
+@dataclass(frozen=True, slots=True)
+class _Mention:
+    """Words of a text for an object: their span, and that of the noun among them, if it is there."""
+
+    span: tuple[int, int]
+    name: str
+    noun: tuple[int, int] | None
+    plural: bool
+
+
+def english_mentions(document: EnglishText, line: int, column: int) -> list[Source]:
+    """Return the places of all phrases for the object at a position, in the order of the text.
+
+    Parameters
+    ----------
+    document
+        Text in English.
+    line, column
+        Position, counted from 1.
+
+    Returns
+    -------
+    list of Source
+        Spans of the phrases; pronouns are not among them. Empty where no object is named.
+
+    Examples
+    --------
+    >>> text = EnglishText("The milk jug is on the tray. The fork is near the jug.")
+    >>> [(place.column, place.end_column) for place in english_mentions(text, 1, 6)]
+    [(1, 13), (47, 54)]
+    """
+    return [_source(document, mention.span) for mention in _mentions_at(document, line, column)]
+
+
+def english_rename(document: EnglishText, line: int, column: int, new_name: str) -> list[Edit]:
+    """Return the edits that put another noun into all phrases for the object at a position.
+
+    Parameters
+    ----------
+    document
+        Text in English.
+    line, column
+        Position, counted from 1.
+    new_name
+        New noun in the singular; plural mentions get its plural.
+
+    Returns
+    -------
+    list of Edit
+        Edits of the nouns; articles, adjectives and pronouns stay as they are.
+
+    Raises
+    ------
+    RenameError
+        If no object is named at the position, the new name is not made of words, or it belongs to another object.
+
+    Examples
+    --------
+    >>> text = EnglishText("The milk jug is on the tray. The fork is near the jug.")
+    >>> [(edit.source.column, edit.text) for edit in english_rename(text, 1, 6, "tea pot")]
+    [(5, 'tea pot'), (51, 'tea pot')]
+    """
+    mentions = _mentions_at(document, line, column)
+    if not mentions:
+        raise RenameError("no object is named here; put the cursor on its noun")
+    words = new_name.replace("_", " ").split()
+    new = " ".join(words)
+    if not words or not all(word.replace("-", "").replace("'", "").isalnum() for word in words):
+        raise RenameError(f"a name must consist of words, got {new_name.strip()!r}")
+    if new.casefold() in {mention.name for mention in _mentions(document)} - {mentions[0].name}:
+        raise RenameError(f"there is an object called '{new}' already; choose another name")
+    return [
+        Edit(_source(document, mention.noun), plural(new) if mention.plural else new)
+        for mention in mentions
+        if mention.noun is not None
+    ]
+
+
+def _mentions_at(document: EnglishText, line: int, column: int) -> list[_Mention]:
+    """Return the mentions of the object whose phrase is at a position; the longest phrase there counts."""
+    if not 1 <= line <= len(document.lines):
+        return []
+    at = sum(len(one) + 1 for one in document.lines[: line - 1]) + column - 1
+    found = _mentions(document)
+    here = [mention for mention in found if mention.span[0] <= at <= mention.span[1]]
+    if not here:
+        return []
+    name = max(here, key=lambda mention: mention.span[1] - mention.span[0]).name
+    return [mention for mention in found if mention.name == name]
+
+
+def _mentions(document: EnglishText) -> list[_Mention]:
+    """Return the phrases for objects; one that stands for objects with different names is left out."""
+    script = document.script
+    if not isinstance(script, Script) or script.reading is None:
+        return []
+    names: dict[str, set[str]] = {}
+    for name, phrases in script.reading.mentions.items():
+        for phrase in phrases:
+            names.setdefault(phrase.casefold(), set()).add(re.sub(r"_\d+$", "", name).replace("_", " ").casefold())
+    text = document.plain.casefold()
+    found: list[_Mention] = []
+    for phrase, of in sorted(names.items(), key=lambda entry: -len(entry[0])):
+        for match in re.finditer(rf"(?<!\w){re.escape(phrase)}(?!\w)", text) if len(of) == 1 else ():
+            if all(match.end() <= one.span[0] or one.span[1] <= match.start() for one in found):
+                found.append(_mention(match.span(), phrase, next(iter(of))))
+    return sorted(found, key=lambda mention: mention.span)
+
+
+def _mention(span: tuple[int, int], phrase: str, name: str) -> _Mention:
+    words = name.split()
+    for noun in (" ".join(words[start:]) for start in range(len(words))):
+        for form in (noun, plural(noun)):
+            if (match := re.search(rf"(?<!\w){re.escape(form)}(?!\w)", phrase)) is not None:
+                return _Mention(span, name, (span[0] + match.start(), span[0] + match.end()), form != noun)
+    return _Mention(span, name, None, False)
+
+
+def _source(document: EnglishText, span: tuple[int, int]) -> Source:
+    """Return the place of a span of characters."""
+    (line, column), (end_line, end_column) = (
+        (document.plain.count("\n", 0, at) + 1, at - document.plain.rfind("\n", 0, at)) for at in span
+    )
+    return Source(document.file, line, column, end_line, end_column)
+
+
 def english_hover(document: EnglishText, line: int, column: int) -> str | None:
     """Return the paraphrase and the facts of the sentence at a position, in Markdown; None between sentences.
+
+    On a phrase for an object, its kind, its usual size and what follows for it stand before them.
 
     Parameters
     ----------
@@ -190,7 +326,7 @@ def english_hover(document: EnglishText, line: int, column: int) -> str | None:
 
     Examples
     --------
-    >>> print(english_hover(EnglishText("The fork lies to the left of the plate."), 1, 5))
+    >>> print(english_hover(EnglishText("The fork lies to the left of the plate."), 1, 12))
     The fork is left of the plate.
     <BLANKLINE>
     - `left(fork, plate)`
@@ -203,7 +339,26 @@ def english_hover(document: EnglishText, line: int, column: int) -> str | None:
         if sentence.span[0] <= at < sentence.span[1]:
             facts = [f"- `{stated.content}`" for stated in script.reading.stated if stated.sentence == number]
             paraphrases = [sentence.paraphrase] if sentence.paraphrase else []
+            about = list(_about(document, script, line, column))
             if not paraphrases and not facts:
-                return "Nothing in this sentence states a fact."
-            return "\n".join([*paraphrases, *([""] if paraphrases and facts else []), *facts])
+                paraphrases = ["Nothing in this sentence states a fact."]
+            return "\n".join([*about, *paraphrases, *([""] if facts else []), *facts])
     return None
+
+
+def _about(document: EnglishText, script: Script, line: int, column: int) -> Iterator[str]:
+    """Yield lines about the object that is named at a position: its kind and size, and what follows for it."""
+    from deixis.grammar.english.telling.wording import relation_words
+    from deixis.ontology.tbox import default_ontology
+
+    mentions, ontology = _mentions_at(document, line, column), default_ontology()
+    if not mentions:
+        return
+    name = mentions[0].name
+    kind = ontology.of_name(name.replace(" ", "_"))[0]
+    yield f"**{name}**: {kind_and_size(ontology, kind) if kind else 'kind unknown'}"
+    yield ""
+    deadline = Deadline.after(HOVER_TIME_LIMIT)
+    follows, _ = what_follows(script, ontology, name.replace(" ", "_"), set(), deadline, relation_words)
+    shown = [f"- follows: {wording.replace('_', ' ')}" for wording in follows[:MAX_FACTS_SHOWN]]
+    yield from [*shown, ""] if shown else []

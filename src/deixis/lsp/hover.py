@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from operator import attrgetter
 
 from deixis.deadline import Deadline
 from deixis.grammar.layout.names import key_of
+from deixis.grammar.script import Script
 from deixis.lsp.document import Document, is_object, name_of
 from deixis.ontology.graph.facts import Fact
-from deixis.ontology.relations.relation import plain_phrase
+from deixis.ontology.relations.relation import Relation, plain_phrase
+from deixis.ontology.tbox import Ontology
 from deixis.ontology.things.kinds import Kind
 
 HOVER_TIME_LIMIT = 1.0
@@ -60,15 +63,29 @@ def hover(document: Document, line: int, column: int, time_limit: float = HOVER_
     name = name_of(token)
     if before is not None and before.type == "IS":
         kind, colour = ontology.quality(name)
-        parts = ([_of_kind(document, kind)] if kind else []) + ([f"colour {colour.label}"] if colour else [])
+        parts = ([kind_and_size(document.words, kind)] if kind else []) + ([f"colour {colour.label}"] if colour else [])
         return f"**{name}**: {', '.join(parts)}" if parts else None
     if not is_object(token, before, None):
         return None
     return "\n".join(_about(document, name, Deadline.after(time_limit)))
 
 
-def _of_kind(document: Document, kind: Kind) -> str:
-    return f"{kind.label}, usually {document.words.sizes.of(kind.iri)}"
+def kind_and_size(ontology: Ontology, kind: Kind) -> str:
+    """Return the name of a kind with the usual size of its things.
+
+    Parameters
+    ----------
+    ontology
+        Ontology with the sizes.
+    kind
+        Kind of thing.
+
+    Returns
+    -------
+    str
+        Phrase such as *fork, usually 12.5 to 23 cm long and 1.2 to 3.5 cm wide*.
+    """
+    return f"{kind.label}, usually {ontology.sizes.of(kind.iri)}"
 
 
 def _about(document: Document, name: str, deadline: Deadline) -> Iterator[str]:
@@ -81,10 +98,10 @@ def _about(document: Document, name: str, deadline: Deadline) -> Iterator[str]:
     colour = script.colours.get(first)
     parts = [f"{group.count} objects"] if group is not None else []
     parts += [f"colour {colour.label}"] if colour else []
-    parts.append(_of_kind(document, kind) if kind else "kind unknown")
+    parts.append(kind_and_size(document.words, kind) if kind else "kind unknown")
     yield f"**{name}**: {', '.join(parts)}"
-    stated = [wording for fact in script.facts if (wording := _seen_from(document, fact, first))]
-    follows, complete = _following(document, first, set(stated), deadline)
+    stated = [wording for fact in script.facts if (wording := _seen_from(document.words, fact, first))]
+    follows, complete = what_follows(script, document.words, first, set(stated), deadline)
     if stated or follows:
         yield ""
     for title, facts in (("states", stated), ("follows", follows)):
@@ -93,23 +110,52 @@ def _about(document: Document, name: str, deadline: Deadline) -> Iterator[str]:
         yield "- …"
 
 
-def _seen_from(document: Document, fact: Fact, name: str) -> str | None:
+def _seen_from(
+    ontology: Ontology, fact: Fact, name: str, words: Callable[[Relation], str] = attrgetter("phrase")
+) -> str | None:
     """Return a fact as a phrase about one of its objects, or None if it is about others."""
     relations = fact.relations
     if fact.object == name:
-        relations = tuple(document.words.relations[relation.inverse] for relation in relations)
+        relations = tuple(ontology.relations[relation.inverse] for relation in relations)
     elif fact.subject != name:
         return None
     other = fact.object if fact.subject == name else fact.subject
     denied, rarely = "" if fact.positive else "not ", "rarely " if fact.rare else ""
-    return f"{rarely}{denied}{' or '.join(relation.phrase for relation in relations)} {other}"
+    return f"{rarely}{denied}{' or '.join(map(words, relations))} {other}"
 
 
-def _following(document: Document, name: str, stated: set[str], deadline: Deadline) -> tuple[list[str], bool]:
-    """Return what follows for an object, and whether all of it was found within the time limit."""
+def what_follows(
+    script: Script,
+    ontology: Ontology,
+    name: str,
+    stated: set[str],
+    deadline: Deadline,
+    words: Callable[[Relation], str] = attrgetter("phrase"),
+) -> tuple[list[str], bool]:
+    """Return what follows for an object from the facts of a script.
+
+    Parameters
+    ----------
+    script
+        Script with the facts.
+    ontology
+        Ontology of its words.
+    name
+        Name of the object.
+    stated
+        Phrases that are left out.
+    deadline
+        Time at which the search ends.
+    words
+        Function that returns the words of a relation.
+
+    Returns
+    -------
+    tuple
+        Phrases such as *left of knife*, at most one more than are shown, and whether all were found in time.
+    """
     from deixis.workflows.layouts.infer import inference_of
 
-    script = document.script
     if not script.facts:
         return [], True
     inference = inference_of(script, deadline.left)
@@ -120,7 +166,7 @@ def _following(document: Document, name: str, stated: set[str], deadline: Deadli
     for number, (fact, _) in enumerate(inference.implications.implied_with_steps()):
         if number % 100 == 99 and deadline.passed:
             return list(found), False
-        wording = _seen_from(document, fact, name)
+        wording = _seen_from(ontology, fact, name, words)
         if wording is not None and wording not in stated:
             found[wording] = None
             if len(found) > MAX_FACTS_SHOWN:

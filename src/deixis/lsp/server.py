@@ -24,7 +24,15 @@ from deixis.lsp.completion import Role, completions
 from deixis.lsp.diagnostics import Problem, errors, warnings
 from deixis.lsp.document import Document
 from deixis.lsp.edits import Edit, RenameError, fixes, formatted, rename
-from deixis.lsp.english import EnglishText, english_completions, english_fixes, english_hover, english_problems
+from deixis.lsp.english import (
+    EnglishText,
+    english_completions,
+    english_fixes,
+    english_hover,
+    english_mentions,
+    english_problems,
+    english_rename,
+)
 from deixis.lsp.hover import hover
 from deixis.lsp.symbols import mentions_of, symbols
 from deixis.ontology.graph.facts import Source
@@ -93,6 +101,27 @@ class LayoutServer(LanguageServer):
         """
         document = self.document(uri)
         return document if isinstance(document, Document) else Document("\n" * (len(document.lines) - 1))
+
+    def mentions(self, uri: str, place: types.Position) -> tuple[Document | EnglishText, list[Source]]:
+        """Return a document and the places at which it mentions the object at a position.
+
+        Parameters
+        ----------
+        uri
+            URI of an open document.
+        place
+            Position of the cursor.
+
+        Returns
+        -------
+        tuple
+            Document, and the spans in their order; none where no object is named.
+        """
+        document = self.document(uri)
+        line, column = self.position(document, place)
+        if isinstance(document, EnglishText):
+            return document, english_mentions(document, line, column)
+        return document, mentions_of(document, line, column)
 
     def forget(self, uri: str) -> None:
         """Drop a document that was closed, and take its problems from the editor's list.
@@ -304,24 +333,34 @@ def build_server() -> LayoutServer:
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare_rename(params: types.PrepareRenameParams) -> types.Range | None:
-        document = server.layout(params.text_document.uri)
-        name = document.name_at(*server.position(document, params.position))
+        document = server.document(params.text_document.uri)
+        line, column = server.position(document, params.position)
+        if isinstance(document, EnglishText):
+            edits = english_rename(document, line, column, "thing") if english_mentions(document, line, column) else []
+            here = [edit.source for edit in edits if edit.source.column <= column <= edit.source.end_column]
+            here = [source for source in here if source.line == line]
+            return server.range(document, here[0]) if here else None
+        name = document.name_at(line, column)
         return None if name is None else server.range(document, name.source)
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_object(params: types.RenameParams) -> types.WorkspaceEdit:
         uri = params.text_document.uri
-        document = server.layout(uri)
+        document = server.document(uri)
+        line, column = server.position(document, params.position)
         try:
-            edits = rename(document, *server.position(document, params.position), params.new_name)
+            if isinstance(document, EnglishText):
+                edits = english_rename(document, line, column, params.new_name)
+            else:
+                edits = rename(document, line, column, params.new_name)
         except RenameError as error:
             raise JsonRpcInvalidParams(message=str(error)) from None
         return types.WorkspaceEdit(changes={uri: [server.text_edit(document, edit) for edit in edits]})
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
     def write_canonically(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
-        document = server.layout(params.text_document.uri)
-        text = formatted(document)
+        document = server.document(params.text_document.uri)
+        text = formatted(document) if isinstance(document, Document) else None  # English has no canonical form
         if text is None or text == document.text:
             return []
         end = Source(document.file, 1, 1, len(document.lines), len(document.lines[-1]) + 1)
@@ -337,15 +376,13 @@ def build_server() -> LayoutServer:
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def first_mention(params: types.DefinitionParams) -> types.Location | None:
         uri = params.text_document.uri
-        document = server.layout(uri)
-        found = mentions_of(document, *server.position(document, params.position))
+        document, found = server.mentions(uri, params.position)
         return types.Location(uri, server.range(document, found[0])) if found else None
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def all_mentions(params: types.ReferenceParams) -> list[types.Location]:
         uri = params.text_document.uri
-        document = server.layout(uri)
-        found = mentions_of(document, *server.position(document, params.position))
+        document, found = server.mentions(uri, params.position)
         return [types.Location(uri, server.range(document, place)) for place in found]
 
     return server

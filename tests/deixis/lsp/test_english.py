@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.lsp.english import EnglishText, english_completions, english_fixes, english_hover, english_problems
+from deixis.lsp.edits import RenameError
+from deixis.lsp.english import (
+    EnglishText,
+    english_completions,
+    english_fixes,
+    english_hover,
+    english_mentions,
+    english_problems,
+    english_rename,
+)
 
 TEXT = "The fork is left of the plate.\r\nIt zorbles the quux blargh wibble.\r\nThe knife is right of the plate."
 
@@ -40,3 +49,46 @@ def test_completion_offers_names_and_relations_of_english() -> None:
 def test_hover_shows_the_facts_of_the_sentence() -> None:
     assert "`right(knife, plate)`" in (english_hover(EnglishText(TEXT), 3, 4) or "")
     assert "left" not in (english_hover(EnglishText(TEXT), 3, 4) or "left")
+
+
+JUGS = "The milk jug is on the tray.\nTwo cups stand next to the jug. It is left of the pot; the cups are red."
+
+
+def test_all_mentions_of_an_object_are_found() -> None:
+    places = [(one.line, one.column, one.end_column) for one in english_mentions(EnglishText(JUGS), 2, 26)]
+    assert places == [(1, 1, 13), (2, 24, 31)]
+    assert english_mentions(EnglishText(JUGS), 2, 12) == [] and english_mentions(EnglishText(JUGS), 9, 1) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "new", "expected"),
+    [
+        (1, 6, "tea_pot", [(1, 5, "tea pot"), (2, 28, "tea pot")]),
+        (2, 6, "glass", [(2, 5, "glasses"), (2, 60, "glasses")]),
+    ],
+)
+def test_renaming_changes_the_nouns_of_all_mentions(
+    line: int, column: int, new: str, expected: list[tuple[int, int, str]]
+) -> None:
+    edits = english_rename(EnglishText(JUGS), line, column, new)
+    assert [(edit.source.line, edit.source.column, edit.text) for edit in edits] == expected
+
+
+@pytest.mark.parametrize(
+    ("column", "new", "message"),
+    [(6, "pot", "already"), (6, "a;b", "words"), (6, " ", "words"), (15, "vase", "no object")],
+)
+def test_names_that_cannot_be_given_are_refused(column: int, new: str, message: str) -> None:
+    with pytest.raises(RenameError, match=message):
+        english_rename(EnglishText(JUGS), 1, column, new)
+
+
+def test_completion_offers_names_after_an_article() -> None:
+    text = JUGS + " The fork is left of the "
+    found = english_completions(EnglishText(text), 2, len(text.split("\n")[1]) + 1)
+    assert {"milk jug", "pot"} <= {one.text for one in found}
+
+
+def test_hover_shows_kind_size_and_what_follows_for_an_object() -> None:
+    shown = english_hover(EnglishText("The fork is left of the plate. The plate is left of the knife."), 1, 6) or ""
+    assert shown.startswith("**fork**: fork, usually 12.5 to 23 cm") and "- follows: left of knife" in shown

@@ -160,6 +160,15 @@ def test_a_text_in_english_is_checked_and_explained(client: Client) -> None:
     asked = {"textDocument": {"uri": uri}, "position": place(0, 5)}
     assert "`left(fork, plate)`" in client.ask("textDocument/hover", asked)["result"]["contents"]["value"]
     assert client.ask("textDocument/documentSymbol", asked)["result"] == []
+    options = {"tabSize": 4, "insertSpaces": True}
+    assert client.ask("textDocument/formatting", {**asked, "options": options})["result"] == []
+    assert client.ask("textDocument/prepareRename", asked)["result"] == {"start": place(0, 4), "end": place(0, 8)}
+    edits = client.ask("textDocument/rename", {**asked, "newName": "spoon"})["result"]["changes"][uri]
+    assert [edit["range"]["start"] for edit in edits] == [place(0, 4), place(0, 60)]
+    refused = client.ask("textDocument/rename", {**asked, "newName": "plate"})
+    assert "already" in refused["error"]["message"]
+    assert client.ask("textDocument/definition", asked)["result"]["range"]["start"] == place(0, 0)
+    assert len(client.ask("textDocument/references", {**asked, "context": {"includeDeclaration": True}})["result"]) == 2
 
 
 def message(body: object) -> bytes:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.figure import dress_table, new_figure
-from deixis.plots.names import MANY, Box, _seems_another, crosses, write_names
+from deixis.plots.names import write_names
+from deixis.plots.placement import MANY, crosses
 
 
 def written(things: list[PerceivedObject], quiet: tuple[str, ...] = ()) -> Figure:
@@ -66,12 +66,6 @@ def test_leader_lines_cross_no_other_thing_and_no_name() -> None:
         assert crosses(((x0, y0), (x1, y1)), boxes).sum() <= 1  # the thing itself
     for index, name in enumerate(names):
         assert not any(name.overlaps(other) for other in names[:index])
-
-
-def test_a_name_beside_another_thing_has_a_line_to_its_own() -> None:
-    own, other = Box(0, 0, 10, 100), np.array([[30.0, 0.0, 90.0, 40.0]])
-    assert _seems_another(Box(20, 45, 80, 55), own, other)
-    assert not _seems_another(Box(12, 60, 40, 70), own, other)
 
 
 def test_a_word_covers_neither_end_of_a_short_arrow() -> None:

@@ -77,7 +77,7 @@ def test_number_of_other_readings_is_bounded() -> None:
         ("The spoon, if there is soup, lies to the right of the knife. The jug is on the box.", ["on(jug, box)"]),
         ("The lid, when hot, lies next to the pot. The jug is on the box.", ["on(jug, box)"]),
         ("The key that once hung from the hook is lost. The jug is on the box.",
-         ["state(key, 'lose')", "on(jug, box)"]),
+         ["state(key, 'lost')", "on(jug, box)"]),
         ("Perhaps there is a cup behind the jug. The jug is on the box.", ["on(jug, box)"]),
         ("Never is there a cup behind the jug. The jug is on the box.",
          ["not behind(cup, jug)", "on(jug, box)"]),

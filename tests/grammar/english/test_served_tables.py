@@ -90,7 +90,7 @@ def test_steps_name_what_comes_next(text: str, expected: list[str]) -> None:
          ["inside(corks, top_rack)", "inside(lids, bottom_rack)"]),
         ("The ladles go to the left of the pot. The long ladle is behind the jug.",
          ["left(ladles, pot)", "behind(ladle, jug)"]),
-        ("Incense burns in a bowl.", ["state(incense, 'burn')", "inside(incense, bowl)"]),
+        ("Incense burns in a bowl.", ["state(incense, 'burning')", "inside(incense, bowl)"]),
         ("Candlesticks are placed behind the bowl.", ["behind(candlesticks, bowl)"]),
     ],
 )  # fmt: skip

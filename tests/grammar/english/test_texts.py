@@ -177,7 +177,7 @@ def asserted(text: str) -> list[str]:
          ["inside(bolt, tin)", "under(nut, plate)"]),
         ("The vase was moved from the box to the shelf. The cup is behind the vase.",
          ["on(vase)", "behind(cup, vase)"]),
-        ("The jug should be rinsed and stand behind the box.", ["state(jug, 'rinse')", "behind(jug, box)"]),
+        ("The jug should be rinsed and stand behind the box.", ["state(jug, 'rinsed')", "behind(jug, box)"]),
         ("The mats lie on the box, each with a pen across it.", ["on(mats, box)", "across(pen, mats)"]),
         ("The phone is on the box, and beneath the phone a card.", ["on(phone, box)", "under(card, phone)"]),
         ("The pins, points to the left, lie behind the box.", ["behind(pins, box)", "pointing(pins, 'left')"]),

@@ -91,7 +91,7 @@ def log_sum_without_facts(problem: Problem) -> float:
 def entropy_without_facts(problem: Problem) -> float:
     """Return the entropy in nats of the maps without facts: the logarithm of the effective number of maps.
 
-    It is the log sum minus its derivative by the power to which all weights are raised.
+    It is the log sum minus the mean value of the maps.
 
     Parameters
     ----------
@@ -110,12 +110,42 @@ def entropy_without_facts(problem: Problem) -> float:
     >>> round(float(np.exp(entropy_without_facts(problem))))  # three things in any order
     6
     """
+    return max(0.0, log_sum_without_facts(problem) - mean_without_facts(problem, problem.unary))
+
+
+def mean_without_facts(problem: Problem, unary: Array) -> float:
+    """Return the mean of a part of the value over all maps, weighted by the exponential of their value without facts.
+
+    It is the derivative of the log sum by a power to which the weights of this part are raised.
+
+    Parameters
+    ----------
+    problem
+        The problem of n1 objects and n2 things; its facts are ignored.
+    unary
+        Part of the evidence of each match, shape (n1, n2); the costs of absence count too.
+
+    Returns
+    -------
+    float
+        Mean in nats.
+
+    Examples
+    --------
+    >>> none = np.zeros((0, 2), np.int64)
+    >>> unary = np.log(np.array([[3.0]]))
+    >>> problem = Problem(none, none[:, 0], np.zeros((0, 1, 1), np.float32), unary, np.zeros(1))
+    >>> round(float(mean_without_facts(problem, unary) / np.log(3.0)), 6)  # one map of weight 3, one of weight 1
+    0.75
+    """
 
     def raised(power: float) -> float:
-        return log_sum_without_facts(replace(problem, unary=power * problem.unary, absent=power * problem.absent))
+        more = power - 1.0
+        return log_sum_without_facts(
+            replace(problem, unary=problem.unary + more * unary, absent=power * problem.absent)
+        )
 
-    slope = (raised(1 + STEP) - raised(1 - STEP)) / (2 * STEP)
-    return max(0.0, raised(1.0) - slope)
+    return (raised(1 + STEP) - raised(1 - STEP)) / (2 * STEP)
 
 
 def _log_prior(absent: Array, n2: int) -> float:

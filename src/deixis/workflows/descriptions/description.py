@@ -478,6 +478,12 @@ def _constraints(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Pro
             continue
         for phrase, landmark in landmarks:
             positive = predicate.positive != (phrase.negated or phrase.determiner == "no")
+            part = "" if predicate.subject_part is None else predicate.subject_part.head
+            positive = positive != (name == "facing" and part in {"back", "rear"})  # 'with its back to the door'
+            if phrase.negated and phrase.pronoun == "one":  # 'the desk with the lamp, not the one with the screen'
+                refused = _denied(replace(landmark, negated=False))
+                properties, relations = [*properties, *refused[0]], [*relations, *refused[1]]
+                continue
             if (person := _person(phrase)) is not None:
                 properties += _from_person(replace(predicate, positive=positive), phrase, name, person)
                 continue
@@ -503,6 +509,8 @@ def _constraints(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Pro
                 relations += _on_surface(landmark, positive)
             elif landmark.noun in SURROUNDINGS:
                 properties += _place(replace(predicate, positive=positive))
+                own = tuple(one for one in phrase.predicates if not one.arguments)  # 'on the right of the room, red'
+                properties += _constraints(own, depth + 1)[0] if positive else ()
                 relations += _on_surface(landmark, positive)
             else:
                 degree = str(predicate.degree)

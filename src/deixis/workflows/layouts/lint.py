@@ -6,6 +6,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
 from pathlib import Path
 
 from deixis.answers import Answer, count
@@ -229,7 +230,10 @@ def _name_findings(script: Script) -> Iterator[Finding]:
             message, hint = f"'{name}' is one letter away from '{near}'", f"did you mean '{near}'?"
             yield Finding("N001", mention.source, message, hint, near if mention.name == name else None)
         elif name not in known | declared:
-            kind = next((word for word in one_letter_away(name) if ontology.kinds.of_word(word)), None)
+            kinds = [word for word in one_letter_away(name) if ontology.kinds.of_word(word)]
+            kind = max(
+                kinds, key=lambda word: SequenceMatcher(None, word, name).ratio(), default=None
+            )  # 'fork' for 'forck'
             if kind is not None and len(name) >= MIN_COMPARED_LETTERS:
                 message, hint = f"'{name}' is one letter away from '{kind}'", f"did you mean '{kind}'?"
                 yield Finding("N001", mention.source, message, hint, kind if mention.name == name else None)

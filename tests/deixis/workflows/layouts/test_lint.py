@@ -55,6 +55,11 @@ def test_a_script_has_exactly_these_warnings(text: str, expected: list[str]) -> 
     assert sorted(codes(text, *ignored)) == expected
 
 
+def test_the_most_similar_kind_is_suggested() -> None:
+    (finding,) = deixis.lint(deixis.read_script(text="forck left of plate"), select=["N001"]).findings
+    assert finding.replacement == "fork"
+
+
 def test_a_misspelling_has_a_replacement() -> None:
     (finding,) = deixis.lint(deixis.read_script(text="a_fork left of plate; cup on plaet"), select=["N001"]).findings
     assert (finding.replacement, finding.source.column, finding.source.end_column) == ("plate", 30, 35)

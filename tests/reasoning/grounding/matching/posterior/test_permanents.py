@@ -8,9 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matching_problems import maps
 
 from deixis.reasoning.grounding.matching.posterior import permanents
-from deixis.reasoning.grounding.matching.posterior.permanents import log_prior, log_sum_without_facts
+from deixis.reasoning.grounding.matching.posterior.permanents import (
+    log_prior,
+    log_sum_without_facts,
+    mean_without_facts,
+)
 from deixis.reasoning.grounding.matching.problem import Problem
 
 
@@ -42,6 +47,19 @@ def enumerated(problem: Problem, unary: bool) -> float:
 def test_sums_are_those_of_all_maps(problem: Problem) -> None:
     assert log_sum_without_facts(problem) == pytest.approx(enumerated(problem, True), abs=1e-9)
     assert log_prior(problem) == pytest.approx(enumerated(problem, False), abs=1e-9)
+
+
+@settings(max_examples=40, deadline=None)
+@given(problems())
+def test_means_are_those_over_all_maps(problem: Problem) -> None:
+    part = np.random.default_rng(0).normal(0, 1, problem.unary.shape)
+    found = [(problem.value(option), option) for option in maps(problem.allowed)]
+    weights = np.exp([value for value, _ in found])
+    values = [
+        sum(problem.absent[i] if p < 0 else part[i, p] for i, p in enumerate(option.tolist())) for _, option in found
+    ]
+    mean = float(weights @ values / weights.sum())
+    assert mean_without_facts(problem, part) == pytest.approx(mean, abs=1e-4)
 
 
 @pytest.mark.parametrize("spread", [0.0, 1.0, 3.0])
