@@ -276,7 +276,7 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
         on = pieces.of >= 0
         on[top] = True
         seen_so = holes(table.view, on, settings.notes)
-    above = Above(view.points, rising.above | (view.heights >= settings.reach), least, table.view.counts)
+    above = Above(view.points, rising, least, table.view.counts)
     missed = (*left_out(table.top, above, pieces, settings), *seen_so)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     if not found.max(initial=BACKGROUND) >= 0:

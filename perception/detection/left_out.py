@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import cell_codes
 from deixis.perception.detection.settings import DetectionSettings, NoteSettings
+from deixis.perception.detection.table.heights import Raised
 from deixis.perception.detection.table.table_top import TableTop
 from deixis.perception.detection.table.viewpoint import View
 
@@ -50,17 +51,17 @@ class Pieces:
 class Above:
     """Points of a view (n, 3) in the frame of the table, and which of them are above it.
 
-    ``mask`` (n,) marks the points above the table. ``least`` (n,) is the height in metres that an object has at least
+    ``least`` (n,) is the height in metres that an object has at least
     at their distances. ``counts`` (n,) are the numbers of points of the cloud for which they stand.
     """
 
     points: NDArray[np.float64]
-    mask: NDArray[np.bool_]
+    raised: Raised
     least: NDArray[np.float64]
     counts: NDArray[np.int64]
 
-    def groups(self, chosen: NDArray[np.bool_], settings: DetectionSettings) -> tuple[int, int]:
-        """Return the number of connected groups of points that could be objects, and the number of their points.
+    def groups(self, chosen: NDArray[np.bool_], settings: DetectionSettings) -> NDArray[np.intp]:
+        """Return the connected group of each point, if the group is as large and as high as objects are.
 
         Parameters
         ----------
@@ -71,15 +72,16 @@ class Above:
 
         Returns
         -------
-        tuple of int
-            Numbers of groups and of points of the cloud; 0 if no group is large and high enough.
+        ndarray
+            Numbers of groups, from 0, of shape (n,); -1 for other points.
         """
+        result = np.full(len(self.points), -1)
         places = np.flatnonzero(chosen)
         of = connected(self.points[places], settings.notes.group_cell)
-        counts = np.bincount(of, self.counts[places])
         high = np.bincount(of, self.points[places, 2] > self.least[places]) / np.bincount(of)
-        large = (counts >= settings.least_points) & (high > 1 - settings.heights.object_quantile)
-        return int(large.sum()), int(counts[large].sum())
+        enough = np.bincount(of, self.counts[places]) >= settings.least_points
+        result[places] = np.where(enough & (high > 1 - settings.heights.object_quantile), np.arange(len(high)), -1)[of]
+        return result
 
 
 def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSettings) -> tuple[str, ...]:
@@ -103,23 +105,28 @@ def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSet
     tuple of str
         One sentence for each kind of omission.
     """
-    missed = above.mask & (pieces.things < 0)
+    anything = above.raised.above | above.raised.too_high
+    missed = anything & (pieces.things < 0)
     aside = missed & ((top.outside > settings.top.slack) | np.append(pieces.fates == Fate.BESIDE, False)[pieces.of])
-    high = missed & ~aside & (above.points[:, 2] >= settings.reach)
+    high = missed & ~aside & above.raised.too_high
     small = missed & ~aside & ~high
+    groups = above.groups(missed, settings)
+    share = np.stack([np.bincount(groups[groups >= 0], which[groups >= 0]) for which in (aside, high, small)])
+    kind = np.append(share.argmax(axis=0), -1)[groups]  # of the most points of each group
     notes = []
-    if above.groups(high, settings)[0]:
+    if (kind == 1).any():
         notes.append(
-            f"{above.counts[high].sum()} points are more than {100 * settings.reach:.0f} cm above the table, higher"
+            f"{above.counts[kind == 1].sum()} points are more than {100 * settings.reach:.0f} cm above the table, higher"
             " than objects are searched: a person, a lamp or a wall"
         )
-    number, points = above.groups(aside, settings)
-    if number:
-        some = "a piece" if number == 1 else f"{number} pieces"
-        notes.append(f"{some} beside the table, of {points} points, {'was' if number == 1 else 'were'} left out")
-    discarded, total = (int(above.counts[which].sum()) for which in (small, above.mask & ~aside & ~high))
+    if (kind == 0).any():
+        number = len(np.unique(groups[kind == 0]))
+        some, were = ("a piece", "was") if number == 1 else (f"{number} pieces", "were")
+        notes.append(f"{some} beside the table, of {above.counts[kind == 0].sum()} points, {were} left out")
+    small = (kind == 2) | (small & (kind < 0))
+    discarded, total = (int(above.counts[which].sum()) for which in (small, small | (pieces.things >= 0)))
     many = discarded >= settings.least_points and discarded > settings.notes.min_discarded_share * total
-    if many or above.groups(small, settings)[0]:
+    if many or (kind == 2).any():
         notes.append(
             f"{discarded} of the {total} points above the table are in pieces too small or too low for objects"
         )

@@ -87,8 +87,9 @@ class ScaleSettings(_Thresholds):
     """Fraction of the points of a standing object that must be so far inside; an adjoining face has hardly any. Tested
     by test_the_kind_of_a_cloud_is_reported."""
     min_rim_share: float = 0.7
-    """Area of a supposed object on a face relative to that of the face, and share of the directions in which something
-    rises at the outline of the face, above which it is the rim of the face, or its other side, as of a tray. Tested by test_the_rim_of_a_tray_is_not_an_object_on_a_table."""
+    """Area of a supposed object on a face relative to that of the face, above which it is the rim of the face, or its
+    other side, as of a tray; also the share of the directions in which something rises at the outline of a tray. Tested
+    by test_the_rim_of_a_tray_is_not_an_object_on_a_table, test_a_flat_thing_without_a_table_is_one_object."""
     min_table_share: float = 0.12
     """Fraction of the points that must be on the table or its objects; below it, the cloud shows a room. No scene or
     test tried depends on it."""
@@ -142,8 +143,7 @@ class PlaneSettings(_Thresholds):
     """Metres inside its outline at which points are above or below a plane: those nearer are often the edge of the
     table. Tested by test_the_edge_of_a_table_does_not_stand_on_its_underside."""
     below_ratio: float = 1.5
-    """Tolerances below a plane at which a point is below it. Tested by
-    test_a_bar_across_the_table_is_not_the_table."""
+    """Tolerances below a plane at which a point is below it. No scene or test tried depends on it."""
     min_standing_share: float = 0.002
     """Fraction of all points that must stand on a plane that is not a floor: some objects, even few. Tested by
     test_a_table_with_few_objects_is_preferred_to_a_larger_floor, and
@@ -218,7 +218,7 @@ class ViewpointSettings(_Thresholds):
 class DensitySettings(_Thresholds):
     """Thinning of bare points that are far denser on some surfaces than on others."""
 
-    sample_size: int = 10_000
+    sample_size: int = 3_000
     """Number of points around which the spacing is measured. No scene or test tried depends on it."""
     neighbours: int = 4
     """Number of nearest points that give the spacing: those beside a point of a grid. No scene or test tried depends on

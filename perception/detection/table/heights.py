@@ -19,11 +19,13 @@ from deixis.perception.detection.settings import DetectionSettings, HeightSettin
 class Raised:
     """Points above the table, and the noise of their heights.
 
-    ``above`` is a mask of shape (n,). ``noise`` is the standard deviation of one height, ``averaged`` that of a mean
-    over neighbours, both in metres at one metre from the sensor.
+    ``above`` (n,) marks the points that may be objects, ``too_high`` (n,) those above the reach. ``noise`` is the
+    standard deviation of one height, ``averaged`` that of a mean over neighbours, both in metres at one metre from the
+    sensor.
     """
 
     above: NDArray[np.bool_]
+    too_high: NDArray[np.bool_]
     noise: float
     averaged: float
     settings: HeightSettings
@@ -86,7 +88,7 @@ def raised(
     lower = np.maximum(settings.height / 4, limits.lower_threshold * left * growth)
     highest = settings.reach
     above = grown((mean > upper) & (mean < highest), (mean > lower) & (mean < highest), neighbours)
-    return Raised(above, noise, left, limits)
+    return Raised(above, (mean >= highest) | (heights >= highest), noise, left, limits)
 
 
 def _noise(heights: NDArray[np.float64], growth: NDArray[np.float64], limits: HeightSettings) -> float:

@@ -350,7 +350,7 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
 
 
 def _largest_piece(plane: Plane, on: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the points (k, 3) of the largest connected piece of those ``on`` a plane (n, 3), without strips of walls."""
+    """Return the points (k, 3) of the largest connected piece ``on`` a plane (n, 3), without strips of walls."""
     if len(on) < 3:
         return on
     plan = on @ plane.across.T

@@ -1,4 +1,4 @@
-"""Depth images of a table with boxes on it, as a pinhole camera sees them, with the true label of each point."""
+"""Clouds of a table with boxes on it, as a pinhole camera or a scanner sees them, with the true label of each point."""
 
 from __future__ import annotations
 
@@ -62,6 +62,38 @@ def _depths(directions: NDArray[np.float64], box: Box) -> NDArray[np.float64]:
         meets = (np.array(box)[:, None] - EYE) / directions
     enter, leave = meets.min(axis=0).max(axis=1), meets.max(axis=0).min(axis=1)
     return np.where((enter <= leave) & (enter > 0), enter, np.inf)
+
+
+def scan(boxes: Sequence[Box], table: float, things: float, noise: float = 3e-4, seed: int = 0) -> PointCloud:
+    """Return bare points of a table of one metre and of boxes on it, each on a grid of its own spacing.
+
+    The table is 80 cm below the origin. Of the boxes, all sides but the bottom are scanned.
+    """
+    half, rng = 0.5, np.random.default_rng(seed)
+    faces = [(0, _grid((-half, -half, 0.0), (half, half, 0.0), 2, table))]
+    for number, (low, high) in enumerate(boxes, start=1):
+        for axis, at in ((2, high), (0, low), (0, high), (1, low), (1, high)):
+            face = np.array([low, high])
+            face[:, axis] = at[axis]
+            faces.append((number, _grid(*face.tolist(), axis, things)))
+    labels = np.repeat([number for number, _ in faces], [len(face) for _, face in faces])
+    points = np.concatenate([face for _, face in faces])
+    seen = np.ones(len(points), dtype=np.bool_)
+    for number, (low, high) in enumerate(boxes, start=1):
+        seen &= (labels == number) | ~((points >= np.array(low)) & (points <= np.array(high))).all(axis=1)
+    points = points[seen] + rng.normal(0, noise, (seen.sum(), 3)) - (0.0, 0.0, 0.8)
+    return PointCloud(points.astype(np.float32), labels=labels[seen].astype(np.int32))
+
+
+def _grid(low: Sequence[float], high: Sequence[float], axis: int, spacing: float) -> NDArray[np.float64]:
+    """Return the points of a grid on the face of a box that is orthogonal to an axis."""
+    sides = [np.arange(low[k], high[k], spacing) if k != axis else np.array([low[k]]) for k in range(3)]
+    return np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
+
+
+@pytest.fixture
+def boxes_scanned() -> Callable[..., PointCloud]:
+    return scan
 
 
 @pytest.fixture

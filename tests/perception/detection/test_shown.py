@@ -63,6 +63,33 @@ def test_the_rim_of_a_tray_is_not_an_object_on_a_table() -> None:
     assert detect(PointCloud(tray.astype(np.float32))).shows == Shows.OBJECT
 
 
+@pytest.mark.parametrize("rim", [0.0, 0.01, 0.03])
+@pytest.mark.parametrize(("width", "depth"), [(0.45, 0.37), (0.42, 0.28), (0.6, 0.4)])
+def test_a_flat_thing_without_a_table_is_one_object(width: float, depth: float, rim: float) -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[0:width:0.004, 0:depth:0.004])
+    edge = (np.minimum(x, width - x) < 0.006) | (np.minimum(y, depth - y) < 0.006)
+    layers = [np.column_stack([x[edge], y[edge], np.full(edge.sum(), z)]) for z in np.arange(0.003, rim, 0.003)]
+    points = np.concatenate([np.column_stack([x, y, 0 * x]), *layers]) - (0.0, 0.0, 0.8)
+    points += np.random.default_rng(0).normal(0, 5e-4, points.shape)
+    shows = detect(PointCloud(points.astype(np.float32))).shows
+    assert shows == (Shows.TABLE if width > 0.5 and not rim else Shows.OBJECT)  # a bare surface of 60 cm may be a table
+
+
+def test_a_table_that_is_cut_by_the_image_is_a_table(boxes_seen: Look) -> None:
+    cloud = boxes_seen([])
+    assert cloud.organised is not None
+    whole = cloud.points.reshape(*cloud.organised, 3)
+    near = whole[60:140, 60:150]  # 45 by 35 cm
+    assert detect(PointCloud(near.reshape(-1, 3), organised=near.shape[:2])).shows == Shows.TABLE
+
+
+def test_a_table_with_objects_only_at_its_edge_is_a_table(boxes_seen: Look) -> None:
+    things: list[Box] = [((x, 0.42, 0.0), (x + 0.08, 0.5, 0.1)) for x in (-0.3, 0.0, 0.3)]
+    for cloud in (boxes_seen(things), boxes_seen(things).take(np.flatnonzero(boxes_seen(things).finite))):
+        found = detect(cloud)
+        assert (found.shows, len(found.boxes)) == (Shows.TABLE, 3)
+
+
 def test_two_separate_pieces_are_not_one_object() -> None:
     one = shell((0.3, 0.1, 0.1))
     assert share_connected(one, 0.02) == 1.0

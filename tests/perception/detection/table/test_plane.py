@@ -80,3 +80,13 @@ def test_points_without_a_plane_have_no_table() -> None:
     assert table_plane(np.zeros((50, 3)), CameraPose(np.array([0.0, 0.0, 1.0])), DetectionSettings()) is None
     line = np.outer(np.linspace(0, 1, 50), [1.0, 2.0, 3.0])
     assert table_plane(line, CameraPose(np.array([0.0, 0.0, 1.0])), DetectionSettings()) is None
+
+
+def test_the_edge_of_a_table_does_not_stand_on_its_underside() -> None:
+    rng = np.random.default_rng(0)
+    edge = np.column_stack([rng.uniform(-0.5, 0.5, 200), np.full(200, -0.5), rng.uniform(-0.03, -0.01, 200)])
+    speck = rng.uniform((0.1, 0.1, 0.01), (0.12, 0.12, 0.03), (100, 3))
+    turn = np.array([[np.cos(0.5), -np.sin(0.5), 0.0], [np.sin(0.5), np.cos(0.5), 0.0], [0.0, 0.0, 1.0]])
+    points = np.concatenate([_table(rng, 9000), edge, speck]) @ turn.T
+    plane = table_plane(points, CameraPose(np.array([0.0, -0.6, 0.8])), DetectionSettings())
+    assert plane is not None and plane.normal[2] > 0.99
