@@ -18,10 +18,10 @@ from deixis.grammar.english.chunking.shared_heads import with_shared_heads
 from deixis.grammar.english.clauses.assemble import Assembly, Found
 from deixis.grammar.english.clauses.build import Builder
 from deixis.grammar.english.clauses.built import Built, notes
-from deixis.grammar.english.clauses.ellipses import with_pairs_apart
 from deixis.grammar.english.clauses.joints import Segment, classify, segments
 from deixis.grammar.english.clauses.readings import other_joints, settled
-from deixis.grammar.english.clauses.rewriting import rewritten
+from deixis.grammar.english.clauses.rewriting.ellipses import with_pairs_apart
+from deixis.grammar.english.clauses.rewriting.rewrite import rewritten
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.tokens import (
     MAX_SENTENCE_WORDS,

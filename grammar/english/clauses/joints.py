@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
-from deixis.grammar.english.clauses.editing import type_at
 from deixis.grammar.english.clauses.places import is_place
+from deixis.grammar.english.clauses.rewriting.editing import type_at
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.function_words import PERSONS
 from deixis.grammar.english.vocabulary.nouns import last_word

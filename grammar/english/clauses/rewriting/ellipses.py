@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
-from deixis.grammar.english.clauses.editing import cut, end_before, put_in, type_at
 from deixis.grammar.english.clauses.places import is_place
+from deixis.grammar.english.clauses.rewriting.editing import cut, end_before, put_in, type_at
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.nouns import PARTS
 from deixis.grammar.english.vocabulary.tables import word_set

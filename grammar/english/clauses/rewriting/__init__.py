@@ -1,0 +1,1 @@
+"""Rewrite the chunks of a sentence as plain clauses, in stages."""

@@ -1,0 +1,173 @@
+"""Rewrite participles, means and second verbs as commands of their own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.clauses.rewriting.editing import (
+    BREAKS,
+    HANDS,
+    Run,
+    cut,
+    end_before,
+    leave_out,
+    type_at,
+    without,
+)
+from deixis.grammar.english.vocabulary.nouns import last_word
+from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PLACING_VERBS, PUT_VERBS, verb_forms
+
+_UNSURE = frozenset({"can", "could", "may", "might", "would"})
+"""Modals of what need not be done."""
+
+_UNCONDITIONAL = frozenset({"before", "after", "because", "as", "so"})
+"""Conjunctions of clauses that are not conditions."""
+
+_SERVING = word_set(
+    "ensure allow help save keep simplify reduce minimize minimise protect improve free facilitate maximize maximise"
+)
+"""Verbs of what a placement is good for."""
+
+_GOOD = word_set(
+    "good great best better ideal important helpful useful convenient safest easiest key essential perfect"
+)
+
+
+def with_plain_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks in which each command has its own verb.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks in which participles and means that place something are commands.
+    """
+    for rewrite in (
+        _with_denied_commands, _with_participles_of_commands, without(_second_verb), _with_verbs_of_one_person,
+        _with_means_as_commands, _with_placements_as_commands,
+    ):  # fmt: skip
+        chunks = rewrite(chunks)
+    return chunks
+
+
+def _with_denied_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *never, I repeat never, set the lamp on it* with the command denied."""
+    first = chunks[0] if chunks else None
+    denies = first is not None and (first.type == "NOT" or first.value == "never") and type_at(chunks, 1) == "COMMA"
+    for i, chunk in enumerate(chunks if denies else ()):
+        if chunk.type in ("PUT", "DO"):
+            return [*chunks[:i], replace(chunk, value=replace(chunk.value, positive=False)), *chunks[i + 1 :]]
+    return chunks
+
+
+def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *put the pan on the tray, placing the lid next to it* with a second command."""
+    first = next((chunk.type for chunk in chunks if chunk.type != "ADVERB"), "")
+    for i in range(1, len(chunks) - 2):
+        chunk = chunks[i]
+        led = first in ("PUT", "DO") and chunks[i - 1].type == "COMMA"
+        if led and chunk.type == "TPART" and chunks[i + 1].type == "NP" and chunks[i + 2].type in ("PREP", "ADV"):
+            group = chunk.value if isinstance(chunk.value, VerbGroup) else None
+            if group is not None and group.lemma in PLACING_VERBS:
+                command = replace(chunk, type="PUT", value=replace(group, form="base"))
+                joint = replace(chunks[i - 1], type="CUT")
+                return [*chunks[: i - 1], joint, command, *_with_participles_of_commands(chunks[i + 1 :])]
+    return chunks
+
+
+def _second_verb(chunks: list[Chunk], at: int) -> Run | None:
+    """Find the second verb of *she sits or kneels to the left of it*, which looks like a plural."""
+    types = [type_at(chunks, at + k) for k in range(-1, 3)]
+    if types not in (["VERB", "OR", "NP", "PREP"], ["VERB", "AND", "NP", "PREP"], ["VERB", "OR", "NP", "ADV"]):
+        return None
+    phrase = chunks[at + 1].value
+    form = verb_forms().get(phrase.head) if phrase.plural and phrase.determiner is None else None
+    told = form is not None and form.form == "base" and form.kind in ("posture", "lean")
+    return (at + 2, None) if told and not phrase.adjectives and phrase.head not in NAMED_LIKE_THINGS else None
+
+
+def _with_placements_as_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *storing the plates near the sink saves time* and *keeping it on a shelf is a good idea* as a command.
+
+    Only what is good for something is advice, so that *placing it on the edge is risky* stays as it is.
+    """
+    first = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    if [type_at(chunks, first), type_at(chunks, first + 1)] != ["TPART", "NP"]:
+        return chunks
+    group = chunks[first].value
+    if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in PLACING_VERBS | PUT_VERBS:
+        return chunks
+    verb = end_before(chunks, first + 2, FINITE | BREAKS)
+    placed = any(chunk.type in ("PREP", "ADV") for chunk in chunks[first + 2 : verb])
+    if not placed or type_at(chunks, verb) not in FINITE or not _approves(chunks, verb):
+        return chunks
+    end = end_before(chunks, verb, frozenset({"CUT"}))
+    leave_out(chunks[verb:end], "what a step is good for does not say where something is")
+    command = replace(chunks[first], type="PUT", value=replace(group, form="base"))
+    return [*chunks[:first], command, *chunks[first + 1 : verb], *chunks[end:]]
+
+
+def _approves(chunks: list[Chunk], at: int) -> bool:
+    """Return True for a verb that says what a placement is good for: *saves time*, *is a good idea*."""
+    group = chunks[at].value
+    if not isinstance(group, VerbGroup) or not group.positive or group.past or group.modal in _UNSURE:
+        return False
+    if group.lemma in _SERVING:
+        return True
+    after = chunks[at + 1] if at + 1 < len(chunks) else None
+    if group.lemma != "be" or after is None:
+        return False
+    words = [a.word for a in after.value] if after.type == "ADJP" else []
+    if after.type == "NP":
+        words = [a.word for a in after.value.adjectives] + after.value.head.split()
+    return not _GOOD.isdisjoint(words)
+
+
+def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *protect it by putting it in the box* and *by putting it there, you …* with a second command.
+
+    A placement is a means only where its clause is neither under a condition, nor denied, nor past.
+    """
+    groups = [chunk.value for chunk in chunks if isinstance(chunk.value, VerbGroup)]
+    told = not any(group.past or not group.positive or group.modal in _UNSURE for group in groups)
+    limited = any(
+        chunk.type in ("REL", "COMPLEMENT") or (chunk.type == "SUB" and chunk.value not in _UNCONDITIONAL)
+        for chunk in chunks
+    )
+    if limited or not told:
+        return chunks
+    for at, chunk in enumerate(chunks[:-3]):
+        named = chunk.type == "UNKNOWN" and chunk.value == "by" and chunk.end == chunk.start + 1
+        group = chunks[at + 1].value if named and chunks[at + 1].type == "TPART" else None
+        if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in PLACING_VERBS:
+            continue
+        end = end_before(chunks, at + 2, BREAKS)
+        thing = chunks[at + 2].value if chunks[at + 2].type == "NP" else None
+        placed = any(other.type in ("PREP", "ADV") for other in chunks[at + 3 : end])
+        if not placed or thing is None or last_word(thing.head) in HANDS:
+            continue
+        command = replace(chunks[at + 1], type="PUT", value=replace(group, form="base"))
+        treated = chunks[at - 1].value if thing.pronoun == "it" and type_at(chunks, at - 1) == "NP" else None
+        if treated is not None and not (treated.plural or treated.pronoun):  # 'boil the egg by placing it in …'
+            chunks[at + 2] = replace(chunks[at + 2], value=replace(treated, determiner="the", count=None))
+        ends = [cut(chunks[end])] if type_at(chunks, end) == "COMMA" else chunks[end : end + 1]
+        return [*chunks[:at], cut(chunk), command, *chunks[at + 2 : end], *ends, *chunks[end + 1 :]]
+    return chunks
+
+
+def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the second verb of *I stood the candle on it and poured water around it* as one in the past."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "TPART" or type_at(chunks, i - 1) != "AND" or chunk.value.form != "past":
+            continue
+        first = max((k + 1 for k in range(i - 1) if chunks[k].type in JOINT_TYPES), default=0)
+        spoken = type_at(chunks, first) == "NP" and chunks[first].value.pronoun in ("me", "we")
+        if spoken and type_at(chunks, first + 1) in FINITE:
+            chunks[i] = Chunk("TVERB", chunk.start, chunk.end, replace(chunk.value, past=True), chunk.span)
+    return chunks

@@ -1,0 +1,313 @@
+"""Rewrite other ways to tell a place as a preposition with its noun: purposes, destinations, gaps and aims."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+from deixis.grammar.english.chunking.chunk import FINITE, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses.places import is_place
+from deixis.grammar.english.clauses.rewriting.editing import ENDS, Run, leave_out, put_in, type_at, without
+from deixis.grammar.english.tree import Degree, NounPhrase
+from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, HEADED, HOLDERS, PEOPLE, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.relation_words import Preposition
+from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
+
+_STORING = word_set(
+    "shelf drawer rack cupboard cabinet basket bin compartment crate locker tier pocket hook peg closet wardrobe"
+)
+"""Places of which *for* tells what is kept in them: *the top shelf is for glasses*."""
+
+_RESERVING = frozenset({"use", "reserve", "keep", "save", "dedicate"})
+"""Commands whose object with *for* tells what is kept in it."""
+
+_RESERVED = frozenset({"dedicated", "dedicate", "reserved", "reserve", "meant", "mean", "intended", "intend"})
+"""Participles before *for* and *to* that tell what a place is for."""
+
+_SEATS = frozenset({"place", "pride", "spot", "position", "seat"})
+
+_MOVING = frozenset({"move", "shift", "transfer", "relocate", "return"})
+
+_EXACTLY = frozenset({"just", "directly", "immediately", "right", "slightly"})
+
+_OF_TOOLS = frozenset({"handle", "blade", "tine", "prong", "bowl", "spout"})
+
+_GAPS = frozenset({"gap", "space", "distance", "clearance"})
+
+
+def with_plain_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks in which each place is a preposition with its noun.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks in which purposes, destinations, gaps and aims of parts are places.
+    """
+    for rewrite in (
+        _with_purposes_of_places, _with_measures_denied, _with_destinations, without(_place_taken), _with_gaps,
+        _with_aimed_parts, _with_shared_objects, _with_aims_of_subjects, _with_places_of_nearest,
+    ):  # fmt: skip
+        chunks = rewrite(chunks)
+    return chunks
+
+
+def _with_purposes_of_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the top shelf is for glasses* as *glasses are on the top shelf*; also *is reserved for*."""
+    cuts = [i for i, chunk in enumerate(chunks) if chunk.type == "CUT"]
+    found: list[Chunk] = []
+    for start, end in pairwise([0, *cuts, len(chunks)]):
+        found += _with_purpose_of_place(chunks[start:end])
+    return found
+
+
+def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
+    chunks = [chunk for chunk in whole if chunk.type != "ADVERB"]
+    first = next((i for i, chunk in enumerate(chunks) if chunk.type not in ("CUT", "COMMA")), 0)
+    if chunks and chunks[first].type in ("PUT", "DO", "FIND") and chunks[first].value.lemma in _RESERVING:
+        return _with_reserved_places(chunks, first) or whole
+    types = [type_at(chunks, first + k) for k in range(4)]
+    told = types[2] == "PART" and chunks[first + 2].value.lemma in _RESERVED
+    at = first + 2 + told
+    if types[:2] != ["NP", "BE"] or type_at(chunks, at) != "PREP" or type_at(chunks, at + 1) != "NP":
+        return whole
+    place, be, relator, thing = chunks[first], chunks[first + 1], chunks[at].value, chunks[at + 1].value
+    end = at + 2
+    while [type_at(chunks, end), type_at(chunks, end + 1)] == ["AND", "NP"]:
+        end += 2
+    noun = last_word(place.value.head)
+    single = be.value.positive and (told or not place.value.plural) and be.value.modal in (None, "should", "must")
+    fits = relator.preposition.phrase == "for" or (told and relator.preposition.phrase == "to")
+    named = _names_things(thing)
+    if not (single and fits and named and noun in _STORING and type_at(chunks, end) in ENDS):
+        return whole
+    inside = noun in VESSELS | HOLDERS
+    spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
+    return [*chunks[:first], *chunks[at + 1 : end], be, replace(chunks[at], value=spot), place, *chunks[end:]]
+
+
+def _names_things(phrase: NounPhrase) -> bool:
+    """Return True for *cups* and *the bread*, but not for *transport*, which may be an act, nor for persons."""
+    thing = bool(phrase.head) and last_word(phrase.head) not in PEOPLE and not phrase.pronoun
+    return thing and (phrase.plural or phrase.determiner == "the" or phrase.owner is not None)
+
+
+def _with_reserved_places(chunks: list[Chunk], at: int) -> list[Chunk] | None:
+    """Return *use the upper rack for cups and the lower rack for plates* as *put cups in the upper rack and …*."""
+    if not chunks[at].value.positive:
+        return None
+    made: list[Chunk] = [*chunks[:at], replace(chunks[at], type="PUT", value=VerbGroup("put", "posture", "base"))]
+    at += 1
+    while [type_at(chunks, at + k) for k in range(3)] == ["NP", "PREP", "NP"]:
+        place, relator, thing = chunks[at].value, chunks[at + 1].value, chunks[at + 2].value
+        noun = last_word(place.head)
+        kept = _names_things(thing) and (bool(place.adjectives) or not place.plural)
+        if relator.preposition.phrase != "for" or noun not in _STORING or not kept:
+            return None
+        inside = noun in VESSELS | HOLDERS
+        spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
+        made += [chunks[at + 2], replace(chunks[at + 1], value=spot), chunks[at]]
+        at += 3
+        if type_at(chunks, at) not in ("AND", "COMMA") or type_at(chunks, at + 1) != "NP":
+            return [*made, *chunks[at:]] if type_at(chunks, at) in ENDS else None
+        made.append(chunks[at])
+        at += 1
+    return None
+
+
+def _place_taken(chunks: list[Chunk], at: int) -> Run | None:
+    """Find what *takes the place of honour* and *has pride of place* take, which is where the thing is."""
+    chunk = chunks[at]
+    takes = chunk.type == "TVERB" and chunk.value.lemma in ("take", "have", "occupy", "hold")
+    place = takes and type_at(chunks, at + 1) == "NP" and last_word(chunks[at + 1].value.head) in _SEATS
+    end = at + 2 + 2 * ([type_at(chunks, at + k) for k in (2, 3)] == ["OF", "NP"])
+    if not place or type_at(chunks, end) not in ("PREP", "ADV"):
+        return None
+    denied = chunks[at + 1].value.determiner == "no"  # 'phones have no place on the stand'
+    group = replace(chunk.value, lemma="be", kind="be", positive=chunk.value.positive is not denied)
+    return end, Chunk("BE", chunk.start, chunk.end, group, chunk.span)
+
+
+def _with_measures_denied(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *never more than 10 cm from it* as an upper bound, and *you keep it there* as a statement."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        following = chunks[i + 1] if i + 1 < len(chunks) else None
+        if chunk.type == "NOT" and following is not None and following.type == "MEASURE" and following.value[2]:
+            metres, hedge, bound = following.value
+            following.value = (metres, hedge, "<" if bound == ">" else ">")
+            continue
+        instructed = (
+            chunk.type == "PUT" and type_at(chunks, i - 1) == "NP" and chunks[i - 1].value.pronoun in ("you", "we")
+        )
+        if instructed and type_at(chunks, i + 1) == "NP" and type_at(chunks, i - 2) == "NP":
+            chunk = Chunk("TVERB", chunk.start, chunk.end, chunk.value, chunk.span)
+        found.append(chunk)
+    return found
+
+
+def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *she moved the pen to the drawer* and *it was moved from the desk to the drawer* as *in the drawer*.
+
+    *It has moved to the drawer* is read as *it is in the drawer*.
+    """
+    for i, chunk in enumerate(chunks[:-2]):
+        active = chunk.type == "TVERB" and chunk.value.lemma in _MOVING and chunks[i + 1].type == "NP"
+        passive = chunk.type == "PART" and chunk.value.lemma in _MOVING and type_at(chunks, i - 1) == "BE"
+        gone = chunk.type == "VERB" and chunk.value.lemma in _MOVING and chunk.value.form == "past"
+        gone = gone and not chunk.value.modal and not chunk.value.past  # 'it has moved to the drawer'
+        at = i + 1 + active  # of the places
+        if not (active or passive or gone):
+            continue
+        origin = type_at(chunks, at) == "PREP" and chunks[at].value.preposition.relation == "from"
+        if origin and [type_at(chunks, at + k) for k in (1, 2)] == ["NP", "PREP"]:
+            del chunks[at : at + 2]
+        to = type_at(chunks, at) == "PREP" and chunks[at].value.preposition.phrase == "to"
+        if to and type_at(chunks, at + 1) == "NP":
+            noun = last_word(chunks[at + 1].value.head)
+            relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
+            chunks[at] = replace(chunks[at], value=Relator(Preposition("to", relation)))
+            if gone:
+                chunks[i] = replace(chunk, type="BE", value=replace(chunk.value, lemma="be", kind="be", form="finite"))
+            if passive and not chunks[i - 1].value.modal:
+                chunks[i - 1] = replace(chunks[i - 1], value=replace(chunks[i - 1].value, past=False))
+    return chunks
+
+
+def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *with its blade to the plate* as *with its blade facing the plate*.
+
+    *The handle* after *with* is that of the subject, and the bowl of a spoon is its tip.
+    """
+    found = list(chunks)
+    for i in range(1, len(found) - 1):
+        chunk, before, after = found[i], found[i - 1], found[i + 1]
+        part = last_word(chunk.value.head) if chunk.type == "NP" and not chunk.value.members else ""
+        owned = part in AIMED_PARTS and (chunk.value.owner is None or chunk.value.owner.pronoun is not None)
+        has = before.type == "TVERB" and before.value.lemma == "have"
+        if not owned or not (has or before.type in ("WITH", "COMMA")):
+            continue
+        to = after.type == "PREP" and after.value.preposition.relation == "to" and type_at(found, i + 2) == "NP"
+        aims = to or after.type in ("PART", "TPART", "ADV")
+        aims = aims or (after.type == "PREP" and after.value.preposition.relation in ("pointing", "facing"))
+        if to:
+            aim = Relator(Preposition("to", AIMED_PARTS[part]))
+            found[i + 1] = replace(after, value=aim)
+        tool = any(c.type == "NP" and last_word(c.value.head) in HEADED for c in found[:i])
+        whose = chunk.value
+        own = part in _OF_TOOLS or (tool and part == "edge")
+        if aims and before.type == "WITH" and whose.determiner == "the" and own:
+            whose = replace(whose, determiner=None, owner=NounPhrase(whose.span, pronoun="it"))
+        if aims and part == "bowl" and tool and whose.owner is not None:
+            whose = replace(whose, head="tip")
+        found[i] = replace(chunk, value=whose)
+    return found
+
+
+def _with_shared_objects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the stand holds a cup below or behind the jug* with the jug after both prepositions.
+
+    After *have*, the second place would be that of the subject: *one side has a lamp above or below the box*.
+    """
+    found: list[Chunk] = []
+    end = 0
+    for i, chunk in enumerate(chunks):
+        if i < end:
+            continue
+        types = [type_at(chunks, i + k) for k in range(-2, 4)]
+        shares = types[:3] == ["TVERB", "NP", "ADV"] and types[3] in ("AND", "OR") and types[4:] == ["PREP", "NP"]
+        heights = ("above", "below", "behind", "in_front", "under")
+        if shares and chunk.value.preposition.relation in heights and chunks[i - 2].value.lemma == "have":
+            end = i + 4
+            if types[3] == "AND":
+                found += [replace(chunk, type="PREP"), replace(chunks[i + 3], start=chunk.end)]
+            leave_out(chunks[i + (types[3] == "AND") : end], "this does not say which of the two is where")
+        elif shares and chunk.value.preposition.relation in heights:
+            shared = replace(chunks[i + 3], start=chunk.end, end=chunk.end)
+            found += [replace(chunk, type="PREP"), shared]
+        else:
+            found.append(chunk)
+    return found
+
+
+def _with_aims_of_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with a comma before what tells how and where else a thing is put, after its place.
+
+    *Lay the knife above the plate pointing left* is read as *lay the knife above the plate, pointing left*, and *put
+    the plate at the centre of the mat about 2 cm from its edge* as *…, about 2 cm from its edge*.
+    """
+    found: list[Chunk] = []
+    put = False
+    for i, chunk in enumerate(chunks):
+        put = put and chunk.type not in FINITE
+        placed = chunk.type == "PART" and chunk.value.lemma in PUT_VERBS and chunk.value.form != "ing"
+        put = put or chunk.type == "PUT" or placed
+        aims = chunk.type == "PART" and chunk.value.kind in ("point", "face")
+        turned = chunk.type == "PREP" and chunk.value.preposition.relation in ("pointing", "facing")
+        again = chunk.type == "PREP" and not _EXACTLY.isdisjoint(chunk.value.adverbs)
+        again = again or (chunk.type == "MEASURE" and type_at(chunks, i + 1) == "PREP")
+        at = len(found) - 2
+        if put and chunk.type == "PREP" and _is_filled(found):  # 'put a jug filled with water between the cups'
+            found.insert(at, put_in("COMMA", found[at]))
+            found += [put_in("COMMA", chunk), chunk]
+            continue
+        while type_at(found, at) == "OF" and type_at(found, at - 1) == "NP":
+            at -= 2
+        place = found[at].value.preposition.relation if type_at(found, at) == "PREP" else ""
+        of_place = place in ("on", "inside") and not _names_place(found, at + 1)  # 'on the shelf facing the door'
+        accompanied = [type_at(found, at - 2), type_at(found, at - 1)] == ["WITH", "NP"]  # whose aim this is
+        aims = aims and not accompanied
+        if put and place and type_at(found, len(found) - 1) == "NP" and (aims or (not of_place and (turned or again))):
+            found.append(put_in("COMMA", chunk))
+        found.append(chunk)
+    return found
+
+
+def _names_place(chunks: list[Chunk], at: int) -> bool:
+    return type_at(chunks, at) == "NP" and is_place(chunks[at].value)
+
+
+def _is_filled(chunks: list[Chunk]) -> bool:
+    """Return True for chunks that end with a thing and what it is filled with."""
+    with_phrase = [chunk.type for chunk in chunks[-3:]] == ["NP", "WITH", "NP"]
+    return with_phrase and chunks[-2].value.preposition.phrase.endswith("filled with")
+
+
+def _with_places_of_nearest(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *is closest to the plate on the left* with a comma before the second place."""
+    found = list(chunks)
+    for i in range(len(found) - 4, -1, -1):
+        types = [chunk.type for chunk in found[i : i + 5]]
+        if types[:4] != ["PREP", "NP", "PREP", "NP"] or types[4:] == ["OF"]:
+            continue
+        near, second = found[i].value.preposition, found[i + 2]
+        if (
+            near.degree is Degree.SUPERLATIVE
+            and is_place(found[i + 3].value)
+            and second.value.preposition.phrase == "on"
+        ):
+            found.insert(i + 2, put_in("COMMA", second))
+    return found
+
+
+def _with_gaps(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *leave (a gap of) 2 cm between the cup and the jug* as *leave the cup 2 cm from the jug*."""
+    found = list(chunks)
+    for i in range(len(found) - 5, -1, -1):
+        gap = [c.type for c in found[i + 1 : i + 3]] == ["NP", "OF"] and found[i + 1].value.head in _GAPS
+        at = i + 3 if gap else i + 1
+        types = [chunk.type for chunk in found[at : at + 5]]
+        if found[i].type not in ("PUT", "DO") or found[i].value.lemma not in ("leave", "keep", "allow", "maintain"):
+            continue
+        if types == ["MEASURE", "PREP", "NP", "AND", "NP"] and found[at + 1].value.preposition.relation == "between":
+            measure, _, first, joint, second = found[at : at + 5]
+            put = Chunk("PUT", found[i].start, found[i].end, found[i].value, found[i].span)
+            off = Relator(Preposition("from", "measured_from"))
+            away = Chunk("PREP", joint.start, joint.end, off, joint.span)
+            found[i : at + 5] = [put, first, measure, away, second]
+    return found

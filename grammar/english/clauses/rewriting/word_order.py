@@ -1,0 +1,275 @@
+"""Undo inversions and put in what a relative clause leaves out, so that each clause has a plain order of words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk
+from deixis.grammar.english.clauses.places import is_place
+from deixis.grammar.english.clauses.rewriting.editing import ENDS, PREDICATES, Run, end_before, put_in, type_at, without
+from deixis.grammar.english.tree import NounPhrase
+
+_FOUND_OR_PUT = frozenset(
+    {
+        "have",
+        "see",
+        "find",
+        "keep",
+        "put",
+        "place",
+        "leave",
+        "set",
+        "lay",
+        "hang",
+        "store",
+        "notice",
+        "stick",
+        "line",
+        "arrange",
+        "stack",
+        "tuck",
+        "stand",
+        "hide",
+        "want",
+        "like",
+    }
+)
+"""Verbs whose object is somewhere: *the rest you will find on the shelf*."""
+
+_PLACEMENTS = frozenset({"placement", "position", "location"})
+"""Nouns for the place of a thing, of which a place says where the thing is."""
+
+_RESTING = frozenset({"lay", "stand", "hang", "rest", "sit", "lean"})
+"""Verbs that turn a clause round: *and behind that, in a row, stand your letters*."""
+
+
+def in_plain_order(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks in the order of plain clauses: subject, verb, places.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks in plain order, with the relative pronouns and subjects that the text leaves out.
+    """
+    for rewrite in (
+        _with_placed_subjects, _with_participles_of_posture, _without_resumed_subjects, _with_existential_have,
+        _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs, _with_contact_clauses,
+        without(_stranded), _with_places_before_verbs,
+    ):  # fmt: skip
+        chunks = rewrite(chunks)
+    return chunks
+
+
+def _with_placed_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the placement of the spoon should be …* with the spoon as its subject."""
+    for at in range(len(chunks) - 3):
+        types = [type_at(chunks, at + k) for k in range(-1, 5)]
+        begins = types[0] in ENDS | {"ADVERB"} and types[1:5] == ["NP", "OF", "NP", "BE"]
+        if begins and types[5] in ("PREP", "ADV"):
+            phrase = chunks[at].value
+            plain = not (phrase.adjectives or phrase.predicates or phrase.plural or phrase.owner)
+            if phrase.head in _PLACEMENTS and phrase.determiner == "the" and plain:
+                return [*chunks[:at], *chunks[at + 2 :]]
+    return chunks
+
+
+def _with_participles_of_posture(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the candle is stood on the mat* with a participle."""
+    return [
+        replace(chunk, type="PART")
+        if chunk.type == "VERB" and chunk.value.lemma in ("stand", "sit") and chunk.value.form == "past"
+        and type_at(chunks, i - 1) == "BE" else chunk
+        for i, chunk in enumerate(chunks)
+    ]  # fmt: skip
+
+
+def _stranded(chunks: list[Chunk], at: int) -> Run | None:
+    """Find the preposition at the end of a relative clause: *the bell you were hoping for is …*."""
+    chunk = chunks[at]
+    bare = chunk.type in ("UNKNOWN", "ADVERB") and chunk.value in ("for", "about", "with", "of", "at", "to")
+    ends = bare and type_at(chunks, at - 1) in FINITE | {"PART", "NP"} and type_at(chunks, at + 1) in FINITE
+    return (at + 1, None) if ends and "REL" in [c.type for c in chunks[:at]] else None
+
+
+def _without_resumed_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the pronoun of *the capsules they are inside the tin*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        resumes = (
+            chunk.type == "NP" and chunk.value.pronoun in ("it", "they") and bool(found) and found[-1].type == "NP"
+            and type_at(chunks, i + 1) in FINITE and (len(found) == 1 or found[-2].type in JOINT_TYPES | {"ADVERB"})
+            and bool(found[-1].value.head) and found[-1].value.plural is (chunk.value.pronoun == "they")
+        )  # fmt: skip
+        if not resumes:
+            found.append(chunk)
+    return found
+
+
+def _with_existential_have(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *in the room has a table* as *in the room there is a table*."""
+    for i, chunk in enumerate(chunks):
+        places = [c.type for c in chunks[:i] if c.type != "ADVERB"]
+        turned = places[:1] == ["PREP"] and places.count("NP") == places.count("PREP") + places.count("OF")
+        if chunk.type == "TVERB" and chunk.value.lemma == "have" and turned and set(places) <= {"PREP", "NP", "OF"}:
+            there = Chunk("THERE", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0]))
+            be = Chunk("BE", chunk.start, chunk.end, replace(chunk.value, lemma="be", kind="be"), chunk.span)
+            return [*chunks[:i], there, be, *chunks[i + 1 :]]
+    return chunks
+
+
+def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Put an object that stands first after its verb: *the rest you'll find on the shelf*, *the bread I put it …*."""
+    for i, chunk in enumerate(chunks):
+        before = type_at(chunks, i - 1)
+        first = chunk.type == "NP" and bool(chunk.value.head) and (before in JOINT_TYPES or not before)
+        at = i + 1  # of the person
+        while (
+            first
+            and type_at(chunks, at) in ("COMMA", "AND")
+            and "NP" in (type_at(chunks, at + 1), type_at(chunks, at + 2))
+        ):
+            at += 2 if type_at(chunks, at + 1) == "NP" else 3
+        verb = chunks[at + 1] if at + 1 < len(chunks) else None
+        if not first or verb is None or verb.type not in ("VERB", "TVERB"):
+            continue
+        person = type_at(chunks, at) == "NP" and chunks[at].value.pronoun in ("me", "you", "we", "he", "she")
+        if not person or verb.value.lemma not in _FOUND_OR_PUT:
+            continue
+        again = verb.type == "TVERB" and type_at(chunks, at + 2) == "NP"
+        again = again and chunks[at + 2].value.pronoun in ("it", "they")
+        place = at + 2 + again
+        place += type_at(chunks, place) == "ADVERB"
+        end = next((k for k in range(place, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
+        goes_on = any(c.type in FINITE for c in chunks[place:end]) or (
+            "COMMA" in (c.type for c in chunks[end : end + 1]) and type_at(chunks, end + 1) in FINITE
+        )
+        if goes_on or type_at(chunks, place) not in ("PREP", "ADV") or (verb.type == "TVERB" and not again):
+            continue
+        if not again and not before and at == i + 1:
+            continue  # 'the chair you see on the left' describes one thing
+        if at > i + 1:  # 'soy, vinegar and oil I keep behind the tray' are behind it
+            be = Chunk("BE", verb.start, verb.end, replace(verb.value, lemma="be", kind="be"), verb.span)
+            return [*chunks[:at], be, *_with_objects_after_verbs(chunks[place:])]
+        moved = Chunk("TVERB", verb.start, verb.end, verb.value, verb.span)
+        return [*chunks[:i], chunks[at], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
+    return chunks
+
+
+def _with_parts_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Move the description of a part to the end: *the tweezers, points to the left, lie along the edge*."""
+    for i in range(1, len(chunks) - 3):
+        subject, part = chunks[i - 1], chunks[i + 1]
+        if [type_at(chunks, i + k) for k in (-1, 0, 1)] != ["NP", "COMMA", "NP"] or not subject.value.head:
+            continue
+        if type_at(chunks, i - 2) not in JOINT_TYPES | {"", "ADVERB"} or type_at(chunks, i + 2) not in PREDICATES:
+            continue
+        own = part.value.owner is not None and part.value.owner.pronoun in ("it", "they")
+        if not part.value.head or not (own or (part.value.determiner is None and part.value.owner is None)):
+            continue
+        end = end_before(chunks, i + 2, JOINT_TYPES)
+        if type_at(chunks, end) != "COMMA" or type_at(chunks, end + 1) not in FINITE:
+            continue
+        if any(chunk.type in FINITE | {"REL"} for chunk in chunks[i + 2 : end]):
+            continue
+        last = end_before(chunks, end + 1, JOINT_TYPES)
+        return [*chunks[:i], *chunks[end + 1 : last], *chunks[i:end], *_with_parts_after_verbs(chunks[last:])]
+    return chunks
+
+
+def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with *on which* resolved.
+
+    *The chair on which the coat hangs* is read as *the chair that the coat hangs on*, and *a board on which there are
+    two onions* as two clauses, of which the second says *on the board there are two onions*.
+    """
+    found: list[Chunk] = []
+    waiting: Chunk | None = None
+    for i, chunk in enumerate(chunks):
+        following = chunks[i + 1] if i + 1 < len(chunks) else None
+        which = following is not None and following.type == "NP" and following.value.pronoun == "which"
+        if chunk.type == "PREP" and which and found and i + 2 < len(chunks):
+            if chunks[i + 2].type == "NP" and chunks[i + 2].value.pronoun not in ("me", "you", "we", "someone"):
+                found.append(Chunk("REL", chunk.start, chunk.start + 1, None, chunk.span))
+                waiting = Chunk("ADV", chunk.start, chunk.end, chunk.value, chunk.span)
+                continue
+            before = next((c for c in reversed(found) if c.type == "NP" and _names_thing(c.value)), None)
+            if before is not None:
+                found.append(Chunk("CUT", chunk.start, chunk.start, None, chunk.span))
+        elif chunk.type == "NP" and chunk.value.pronoun == "which" and i and chunks[i - 1].type == "PREP":
+            if waiting is not None and chunks[i - 1].span == waiting.span:
+                continue
+            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and _names_thing(c.value)), None)
+            if before is not None:
+                value = NounPhrase(chunk.span, before.value.head, "the", plural=before.value.plural)
+                chunk = Chunk("NP", chunk.start, chunk.end, value, chunk.span)
+        found.append(chunk)
+        if waiting is not None and chunk.type in ("VERB", "BE"):
+            found.append(waiting)
+            waiting = None
+    return found
+
+
+def _names_thing(phrase: NounPhrase) -> bool:
+    """Return True for a thing and not for its place: *a drawer at the front, in which …*."""
+    return bool(phrase.head) and not is_place(phrase)
+
+
+def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with the relative pronoun of *the book I am reading* put in."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        contact = (
+            chunk.type == "NP"
+            and chunk.value.pronoun in ("me", "you", "we", "he", "she", "nothing", "everyone", "someone")
+            and found
+            and found[-1].type == "NP"
+            and bool(found[-1].value.head)
+            and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
+            and i + 1 < len(chunks)
+            and chunks[i + 1].type in FINITE
+            and not (
+                chunks[i + 1].type == "TVERB" and type_at(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head)
+            )
+        )
+        stranded = [type_at(chunks, i + k) for k in (-1, 0, 2)] == ["NP", "NP", "ADV"]  # 'the box the pens are in'
+        stranded = stranded and type_at(chunks, i + 1) in ("BE", "VERB") and bool(chunks[i - 1].value.head)
+        if contact or (stranded and type_at(chunks, i + 3) in FINITE | ENDS):
+            found.append(put_in("REL", chunk))
+        found.append(chunk)
+    return found
+
+
+def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        lay = (
+            type_at(chunks, i + 1) == "PUT"
+            and chunks[i + 1].value.lemma in _RESTING
+            and "AND" in (c.type for c in found)
+        )
+        if (
+            chunk.type == "COMMA"
+            and (type_at(chunks, i + 1) in ("BE", "VERB") or lay)
+            and type_at(chunks, i + 2) == "NP"
+        ):
+            first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA", "AND"}), default=0)
+            clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
+            if FINITE & set(clause) or "THERE" in clause:
+                first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
+                clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
+            objects = sum(kind in ("PREP", "TPART", "OF") for kind in clause)
+            amid = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found[first:])
+            objects += amid and sum(chunk.type == "AND" for chunk in found[first:])
+            places = clause[:1] in (["PREP"], ["ADV"]) and clause.count("NP") == objects
+            if places and not (FINITE & set(clause)):
+                if lay:
+                    chunks[i + 1].type = "VERB"
+                continue
+        found.append(chunk)
+    return found
