@@ -116,8 +116,8 @@ def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSet
     notes = []
     if (kind == 1).any():
         notes.append(
-            f"{above.counts[kind == 1].sum()} points are more than {100 * settings.reach:.0f} cm above the table, higher"
-            " than objects are searched: a person, a lamp or a wall"
+            f"{above.counts[kind == 1].sum()} points are more than {100 * settings.reach:.0f} cm above the table,"
+            " higher than objects are searched: a person, a lamp or a wall"
         )
     if (kind == 0).any():
         number = len(np.unique(groups[kind == 0]))

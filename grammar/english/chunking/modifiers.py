@@ -246,7 +246,12 @@ class ModifierFinder(NounFinder):
             return True
         if not self._nounish(at + 1) and after not in ("one", "ones"):
             return False
-        if at > 1 and norm.endswith("ed") and self.norms[at - 1].endswith("ly") and self.norms[at - 2] in prepositions():
+        if (
+            at > 1
+            and norm.endswith("ed")
+            and self.norms[at - 1].endswith("ly")
+            and self.norms[at - 2] in prepositions()
+        ):
             return True  # 'in loosely tied bags'
         if form is not None and form.form in ("past", "participle"):
             return (determined and norm not in ("set",)) or (

@@ -308,7 +308,11 @@ class VerbChunker(RelatorChunker):
         if norm == "left":
             return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past", past=True))
         taken = end + (self.norms[end] in ("up", "out", "off", "open"))
-        if norm in ("cut", "shut", "split") and self._previous() in JOINT_TYPES | {""} and self.nouns.is_determiner(taken):
+        if (
+            norm in ("cut", "shut", "split")
+            and self._previous() in JOINT_TYPES | {""}
+            and self.nouns.is_determiner(taken)
+        ):
             return Chunk("DO", at, taken, _with(group, norm, "other", "base"))
         told = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["BE"]
         if norm in ("put", "set", "spread") and told and self._predicate_after(i):

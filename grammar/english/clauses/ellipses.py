@@ -100,7 +100,10 @@ def _listed(chunks: list[Chunk], at: int) -> tuple[list[Chunk], int]:
 
 def _with_listed_places_apart(chunks: list[Chunk]) -> list[Chunk]:
     """Return *jars on the top shelf, cups and mugs in the middle, pans at the bottom* as one note for each place."""
-    if any(chunk.type in FINITE | {"REL", "SUB", "COLON"} for chunk in chunks) or type_at(chunks, 0) not in ("NP", "PUT"):
+    if any(chunk.type in FINITE | {"REL", "SUB", "COLON"} for chunk in chunks) or type_at(chunks, 0) not in (
+        "NP",
+        "PUT",
+    ):
         return chunks
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):

@@ -545,7 +545,9 @@ _SERVING = word_set(
     "ensure allow help save keep simplify reduce minimize minimise protect improve free facilitate maximize maximise"
 )
 """Verbs of what a placement is good for."""
-_GOOD = word_set("good great best better ideal important helpful useful convenient safest easiest key essential perfect")
+_GOOD = word_set(
+    "good great best better ideal important helpful useful convenient safest easiest key essential perfect"
+)
 
 
 def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
