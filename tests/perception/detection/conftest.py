@@ -75,7 +75,7 @@ def scan(boxes: Sequence[Box], table: float, things: float, noise: float = 3e-4,
         for axis, at in ((2, high), (0, low), (0, high), (1, low), (1, high)):
             face = np.array([low, high])
             face[:, axis] = at[axis]
-            faces.append((number, _grid(*face.tolist(), axis, things)))
+            faces.append((number, _grid(face[0].tolist(), face[1].tolist(), axis, things)))
     labels = np.repeat([number for number, _ in faces], [len(face) for _, face in faces])
     points = np.concatenate([face for _, face in faces])
     seen = np.ones(len(points), dtype=np.bool_)

@@ -123,7 +123,8 @@ def random_boxes(kind: str, rng: np.random.Generator) -> list[Box]:
     boxes: list[Box] = []
     for _ in range(int(rng.integers(1, 8))):
         (width, depth), height = rng.uniform(*sides, 2).tolist(), float(rng.uniform(*heights))
-        x, y, z = (*rng.uniform(-0.42, 0.42, 2).tolist(), 0.0)
+        x, y = rng.uniform(-0.42, 0.42, 2).tolist()
+        z = 0.0
         if kind == "at the edge":
             x = 0.5 * float(rng.choice([-1, 1]))
         if kind == "pile" and boxes:
