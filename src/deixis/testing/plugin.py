@@ -89,13 +89,15 @@ class LayoutFile(pytest.File):
             item.expectation = expectation
             yield item
 
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException]) -> Any:
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """Return the message of a malformed expectation without a traceback through Deixis.
 
         Parameters
         ----------
         excinfo
             The exception of the collection.
+        style
+            Style of a traceback; a file that is collected has that of the command line.
 
         Returns
         -------
