@@ -84,7 +84,8 @@ def test_robot_finds_the_forgotten_thing(ran: Ran) -> None:
 
 def test_a_name_that_the_layout_contradicts_is_in_doubt(ran: Ran) -> None:
     assert heard(ran, "robot: I see: t3 is a bowl.")  # the layout has a fork there
-    assert [(thing.id, thing.name) for thing in ran.things] == [("t3", None)]
+    (thing,) = ran.things
+    assert thing.id == "t3" and thing.probability < 0.9  # of a name that nothing contradicts: above 0.99
 
 
 def test_typed_words_and_ids_are_heard(ran: Ran) -> None:
