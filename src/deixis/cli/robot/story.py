@@ -181,7 +181,8 @@ def _running(tour: Tour, out: Path) -> None:
     ):
         robot.wait()
         write_story(robot, out / "live")
-    tour.listing(sorted(lines, key=_start_of))  # a sentence is printed at its end, with the time of its beginning
+    heard = lines[1:]  # after the line that names the memory, which is a temporary folder
+    tour.listing(sorted(heard, key=_start_of))  # a sentence is printed at its end, with the time of its beginning
     tour.picture(
         f"live/{OVERVIEW}",
         "A teacher points at a thing, describes the layout, and asks what is wrong",
