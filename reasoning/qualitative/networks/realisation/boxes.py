@@ -3,8 +3,9 @@
 The constraints on a pair, in any calculus, amount to a set of types of pairs (:mod:`.pair_types`). The search starts
 from boxes given by a scenario of the rectangle algebra, or from random ones, and repeats two steps: it picks for each
 pair the permitted type nearest to the boxes, with a piece of other types around it; and it moves the boxes so that the
-pairs are as little out of their pieces as possible (:mod:`.placement`). Boxes that fit are verified in every calculus.
-A search that finds none proves nothing.
+pairs are as little out of their pieces as possible
+(:mod:`deixis.reasoning.qualitative.networks.realisation.placement`). Boxes that fit are verified in every calculus. A
+search that finds none proves nothing.
 """
 
 from __future__ import annotations
