@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from deixis.grammar.errors import Diagnostic
 from deixis.ontology.graph.claims import Claim
-from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.facts import Fact, Source
 from deixis.ontology.relations.relation import Reading as WordReading
 
 Span = tuple[int, int]
@@ -141,3 +141,26 @@ def joined_choices(stated: Sequence[StatedFact]) -> Iterator[StatedFact]:
             yield replace(
                 fact, content=replace(contents[0], relations=relations, optional=fact.need_not_hold, weight=weight)
             )
+
+
+def source_of_span(text: str, span: Span, file: str) -> Source:
+    """Return the lines and columns of a span of characters.
+
+    Parameters
+    ----------
+    text
+        Text of the file.
+    span
+        Offset of the first character of the span in the text, and the offset after its last one.
+    file
+        Name of the file.
+
+    Returns
+    -------
+    Source
+        Lines and columns, counted from 1.
+    """
+    (line, column), (end_line, end_column) = (
+        (text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)) for at in span
+    )
+    return Source(file, line, column, end_line, end_column)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from deixis.deadline import Deadline
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, ScriptError, ScriptTimeError
+from deixis.grammar.reading import Span, source_of_span
 from deixis.grammar.script import Script
 from deixis.lsp.completion import MAX_COMPLETIONS, MAX_WORDS, Completion, Role
 from deixis.lsp.diagnostics import LINT_TIME_LIMIT, MAX_WARNINGS, Problem
@@ -185,9 +186,9 @@ def _words(document: EnglishText, typed: str) -> Iterator[tuple[str, Role, str]]
 class _Mention:
     """Words of a text for an object: their span, and that of the noun among them, if it is there."""
 
-    span: tuple[int, int]
+    span: Span
     name: str
-    noun: tuple[int, int] | None
+    noun: Span | None
     plural: bool
 
 
@@ -259,11 +260,49 @@ def english_rename(document: EnglishText, line: int, column: int, new_name: str)
     ]
 
 
+def english_noun_at(document: EnglishText, line: int, column: int) -> Source | None:
+    """Return the place of the noun at a position, which :func:`english_rename` replaces there.
+
+    Parameters
+    ----------
+    document
+        Text in English.
+    line, column
+        Position, counted from 1. A position right after the noun belongs to it.
+
+    Returns
+    -------
+    Source or None
+        Span of the noun without articles and adjectives; None where no object is named.
+
+    Examples
+    --------
+    >>> found = english_noun_at(EnglishText("The milk jug is on the tray."), 1, 6)
+    >>> found.column, found.end_column
+    (5, 13)
+    """
+    at = _offset(document, line, column)
+    nouns = (mention.noun for mention in _mentions_at(document, line, column))
+    here = next((noun for noun in nouns if noun is not None and at is not None and noun[0] <= at <= noun[1]), None)
+    return None if here is None else _source(document, here)
+
+
+def _offset(document: EnglishText, line: int, column: int) -> int | None:
+    """Return the number of characters before a position; None for a line that the text does not have."""
+    if not 1 <= line <= len(document.lines):
+        return None
+    return sum(len(one) + 1 for one in document.lines[: line - 1]) + column - 1
+
+
+def _source(document: EnglishText, span: Span) -> Source:
+    return source_of_span(document.plain, span, document.file)
+
+
 def _mentions_at(document: EnglishText, line: int, column: int) -> list[_Mention]:
     """Return the mentions of the object whose phrase is at a position; the longest phrase there counts."""
-    if not 1 <= line <= len(document.lines):
+    at = _offset(document, line, column)
+    if at is None:
         return []
-    at = sum(len(one) + 1 for one in document.lines[: line - 1]) + column - 1
     found = _mentions(document)
     here = [mention for mention in found if mention.span[0] <= at <= mention.span[1]]
     if not here:
@@ -290,21 +329,13 @@ def _mentions(document: EnglishText) -> list[_Mention]:
     return sorted(found, key=lambda mention: mention.span)
 
 
-def _mention(span: tuple[int, int], phrase: str, name: str) -> _Mention:
+def _mention(span: Span, phrase: str, name: str) -> _Mention:
     words = name.split()
     for noun in (" ".join(words[start:]) for start in range(len(words))):
         for form in (noun, plural(noun)):
             if (match := re.search(rf"(?<!\w){re.escape(form)}(?!\w)", phrase)) is not None:
                 return _Mention(span, name, (span[0] + match.start(), span[0] + match.end()), form != noun)
     return _Mention(span, name, None, False)
-
-
-def _source(document: EnglishText, span: tuple[int, int]) -> Source:
-    """Return the place of a span of characters."""
-    (line, column), (end_line, end_column) = (
-        (document.plain.count("\n", 0, at) + 1, at - document.plain.rfind("\n", 0, at)) for at in span
-    )
-    return Source(document.file, line, column, end_line, end_column)
 
 
 def english_hover(document: EnglishText, line: int, column: int) -> str | None:

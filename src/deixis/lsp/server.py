@@ -30,6 +30,7 @@ from deixis.lsp.english import (
     english_fixes,
     english_hover,
     english_mentions,
+    english_noun_at,
     english_problems,
     english_rename,
 )
@@ -336,12 +337,11 @@ def build_server() -> LayoutServer:
         document = server.document(params.text_document.uri)
         line, column = server.position(document, params.position)
         if isinstance(document, EnglishText):
-            edits = english_rename(document, line, column, "thing") if english_mentions(document, line, column) else []
-            here = [edit.source for edit in edits if edit.source.column <= column <= edit.source.end_column]
-            here = [source for source in here if source.line == line]
-            return server.range(document, here[0]) if here else None
-        name = document.name_at(line, column)
-        return None if name is None else server.range(document, name.source)
+            source = english_noun_at(document, line, column)
+        else:
+            name = document.name_at(line, column)
+            source = None if name is None else name.source
+        return None if source is None else server.range(document, source)
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     def rename_object(params: types.RenameParams) -> types.WorkspaceEdit:

@@ -12,6 +12,7 @@ from deixis.lsp.english import (
     english_hover,
     english_mentions,
     english_problems,
+    english_noun_at,
     english_rename,
 )
 
@@ -81,6 +82,12 @@ def test_renaming_changes_the_nouns_of_all_mentions(
 def test_names_that_cannot_be_given_are_refused(column: int, new: str, message: str) -> None:
     with pytest.raises(RenameError, match=message):
         english_rename(EnglishText(JUGS), 1, column, new)
+
+
+def test_the_noun_is_found_whatever_other_objects_are_called() -> None:
+    found = english_noun_at(EnglishText("The thing is on the tray. The milk jug is near the thing."), 1, 32)
+    assert found is not None and (found.column, found.end_column) == (31, 39)
+    assert english_noun_at(EnglishText("The cup is on the tray."), 1, 9) is None
 
 
 def test_completion_offers_names_after_an_article() -> None:

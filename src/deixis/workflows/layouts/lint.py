@@ -14,7 +14,7 @@ from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.layout.names import key_of
-from deixis.grammar.reading import Reading
+from deixis.grammar.reading import Reading, source_of_span
 from deixis.grammar.script import Mention, RelationStatement, Script, mentions
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.export import ON_SURFACE
@@ -168,29 +168,6 @@ def _english_findings(script: Script, reading: Reading) -> Iterator[Finding]:
     for name in reading.uncounted:
         message = f"the number of '{name}' is unknown, so the name stands for all things that fit"
         yield Finding("E003", _written(name, script) or Source(script.file, 1, 1, 1, 1), message, "state the number")
-
-
-def source_of_span(text: str, span: tuple[int, int], file: str) -> Source:
-    """Return the lines and columns of a span of characters.
-
-    Parameters
-    ----------
-    text
-        Text of the file.
-    span
-        Offset of the first character of the span in the text, and the offset after its last one.
-    file
-        Name of the file.
-
-    Returns
-    -------
-    Source
-        Lines and columns, counted from 1.
-    """
-    (line, column), (end_line, end_column) = (
-        (text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)) for at in span
-    )
-    return Source(file, line, column, end_line, end_column)
 
 
 def _written(name: str, script: Script) -> Source | None:
