@@ -9,6 +9,7 @@ from deixis.grammar.english.tree import Span
 from deixis.grammar.english.vocabulary.relation_words import Preposition
 
 FINITE = frozenset({"BE", "VERB", "TVERB"})
+COMMANDS = frozenset({"PUT", "DO", "FIND", "GO"})
 JOINT_TYPES = frozenset({"COMMA", "AND", "OR", "BUT", "THEN", "CUT", "COLON", "SUB"})
 
 

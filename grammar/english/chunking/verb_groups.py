@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.chunking.chunk import COMMANDS, FINITE, JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.relators import CLAUSE_ENDS, NOUNS_TOO, RelatorChunker
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
@@ -34,7 +34,6 @@ PUT_ONLY = word_set(
 )
 
 
-_COMMANDS = frozenset({"PUT", "DO", "FIND", "GO"})
 _NAMED_OR_PASSIVE = frozenset({"set", "laid", "hang", "leave", "stack", "mount", "fix"})
 """Words that begin a note or a participle as well: *set on the hill, …*, *stack on the left*."""
 
@@ -181,8 +180,8 @@ class VerbChunker(RelatorChunker):
         if not placed and self._measure(at + 1) is None:
             return False
         if before not in ("", "CUT"):
-            last = next((c for c in reversed(self.chunks) if c.type in FINITE | _COMMANDS | {"CUT"}), None)
-            return last is not None and last.type in _COMMANDS
+            last = next((c for c in reversed(self.chunks) if c.type in FINITE | COMMANDS | {"CUT"}), None)
+            return last is not None and last.type in COMMANDS
         return norm not in _NAMED_OR_PASSIVE and not IS_FORMS.intersection(self.norms[at:])
 
     def _is_base(self, at: int) -> bool:

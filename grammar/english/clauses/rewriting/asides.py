@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.chunking.chunk import COMMANDS, FINITE, JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.clauses.rewriting.editing import (
     BREAKS,
     ENDS,
@@ -33,8 +33,6 @@ _COMMENTING = frozenset({"make", "mean", "let", "allow", "cause", "give", "preve
 
 _CASES = frozenset({"case", "event"})
 
-_COMMANDS = frozenset({"PUT", "DO", "FIND", "GO"})
-
 _CAUSING = word_set("ensure allow let make cause enable help prevent avoid give create provide leave keep")
 """Verbs of a participle after a comma that tells what a step is good for: *…, ensuring the lid closes*."""
 
@@ -60,32 +58,6 @@ _DONE_BY_MEANS = word_set(
 
 _STEMS = _CAUSING | {lemma.removesuffix("e") for lemma in _CAUSING}
 """Such verbs, and their stems before *-ing* where no table has the verb."""
-
-
-def without_asides(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks without phrases that do not say where something is; most are reported.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks of the statements alone.
-    """
-    for rewrite in (
-        without(_framing), without(_manner), without(_consequence), without(_compared_quality), without(_examples),
-        without(_side_up), without(_first_of_two_commands), without(_used_things), without(_followers),
-        without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement),
-        without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),
-        without(_measures_apart), without(_beneficiary), without(_free_place), _without_comments, without(_search),
-        without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
-        without(_comparison_of_size), without(_posture_of_the_person), without(_apposition_of_object),
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
 
 
 def _prevented(chunks: list[Chunk], at: int) -> Run | None:
@@ -326,7 +298,7 @@ def _framing(chunks: list[Chunk], at: int) -> Run | None:
         leave_out(chunks[at:end], "how something is done is not where it is")
         return end + 1, None
     case = types == ["PREP", "NP", "OF", "NP", "COMMA"] and chunks[at].value.preposition.relation == "inside"
-    clause = case and any(chunk.type in FINITE | _COMMANDS for chunk in chunks[at + 5 :])
+    clause = case and any(chunk.type in FINITE | COMMANDS for chunk in chunks[at + 5 :])
     if not clause or chunks[at + 1].value.head not in _CASES or chunks[at + 1].value.adjectives:
         return None
     leave_out(chunks[at : at + 4], "this says what the sentence is about, not where something is")
@@ -339,7 +311,7 @@ def _manner(chunks: list[Chunk], at: int) -> Run | None:
         return None
     end = end_before(chunks, at + 1, JOINT_TYPES)
     inside = chunks[at + 1 : end]
-    if type_at(chunks, end) != "COMMA" or type_at(chunks, end + 1) not in _COMMANDS or not inside:
+    if type_at(chunks, end) != "COMMA" or type_at(chunks, end + 1) not in COMMANDS or not inside:
         return None
     first = inside[0].value
     word = first.head.partition(" ")[0] if inside[0].type == "NP" and first.determiner is None else ""
@@ -394,7 +366,7 @@ def _examples(chunks: list[Chunk], at: int) -> Run | None:
     if not before.value.plural and not (word == "such as" and (apart or including)):
         return None
     general = last_word(before.value.head) in GENERAL
-    if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in _COMMANDS))):
+    if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in COMMANDS))):
         return None
     end, last = first + 1, 0
     while type_at(chunks, end) == "NP":
@@ -407,7 +379,7 @@ def _examples(chunks: list[Chunk], at: int) -> Run | None:
     if not last or any(chunk.type == "NP" and chunk.value.pronoun for chunk in chunks[first:last]):
         return None
     last = _end_of_list(chunks, first, last)
-    closed = apart and type_at(chunks, last) == "COMMA" and type_at(chunks, last + 1) not in _COMMANDS | {"AND"}
+    closed = apart and type_at(chunks, last) == "COMMA" and type_at(chunks, last + 1) not in COMMANDS | {"AND"}
     leave_out(chunks[first:last], "examples say what the things before can be")
     return last + closed, None
 
@@ -426,7 +398,7 @@ def _first_of_two_commands(chunks: list[Chunk], at: int) -> Run | None:
 
 def _commands_before(chunks: list[Chunk], at: int) -> bool:
     """Return True after a command whose place ends with a noun, so that a noun after *and* would be another place."""
-    return any(chunk.type in _COMMANDS for chunk in chunks[:at]) and type_at(chunks, at - 2) == "COMMA"
+    return any(chunk.type in COMMANDS for chunk in chunks[:at]) and type_at(chunks, at - 2) == "COMMA"
 
 
 def _end_of_list(chunks: list[Chunk], first: int, last: int) -> int:
@@ -557,3 +529,15 @@ def _replacement(chunks: list[Chunk], at: int) -> Run | None:
     if chunks[at + 2].value.preposition.relation not in ("on", "inside", "under", "above", "behind"):
         return None
     return at + 1, replace(chunks[at], type="PUT", value=replace(group, lemma="put", kind="posture"))
+
+
+REWRITES = (
+    without(_framing), without(_manner), without(_consequence), without(_compared_quality), without(_examples),
+    without(_side_up), without(_first_of_two_commands), without(_used_things), without(_followers),
+    without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement),
+    without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),
+    without(_measures_apart), without(_beneficiary), without(_free_place), _without_comments, without(_search),
+    without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
+    without(_comparison_of_size), without(_posture_of_the_person), without(_apposition_of_object),
+)  # fmt: skip
+"""Rewritings that leave out what tells no place, in their order; most report it."""

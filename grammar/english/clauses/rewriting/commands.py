@@ -35,27 +35,6 @@ _GOOD = word_set(
 )
 
 
-def with_plain_commands(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks in which each command has its own verb.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks in which participles and means that place something are commands.
-    """
-    for rewrite in (
-        _with_denied_commands, _with_participles_of_commands, without(_second_verb), _with_verbs_of_one_person,
-        _with_means_as_commands, _with_placements_as_commands,
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
-
-
 def _with_denied_commands(chunks: list[Chunk]) -> list[Chunk]:
     """Return *never, I repeat never, set the lamp on it* with the command denied."""
     first = chunks[0] if chunks else None
@@ -171,3 +150,10 @@ def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
         if spoken and type_at(chunks, first + 1) in FINITE:
             chunks[i] = Chunk("TVERB", chunk.start, chunk.end, replace(chunk.value, past=True), chunk.span)
     return chunks
+
+
+REWRITES = (
+    _with_denied_commands, _with_participles_of_commands, without(_second_verb), _with_verbs_of_one_person,
+    _with_means_as_commands, _with_placements_as_commands,
+)  # fmt: skip
+"""Rewritings of commands, in their order."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
 from deixis.grammar.english.clauses.places import is_place
-from deixis.grammar.english.clauses.rewriting.editing import cut, end_before, put_in, type_at
+from deixis.grammar.english.clauses.rewriting.editing import ENDS, cut, end_before, put_in, type_at
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.nouns import PARTS
 from deixis.grammar.english.vocabulary.tables import word_set
@@ -15,36 +15,8 @@ _LOOKING = word_set("look peek peep peer search check open lift")
 """Verbs of a sentence that sends the reader to a place."""
 _SEEING = word_set("see find notice discover spot")
 """Verbs of a sentence that says what is there."""
-_ENDS = frozenset({"COMMA", "CUT", ""})
-"""Types of chunks at which a clause ends, and of the end of a sentence."""
 _NOT_THERE = word_set("facing pointing to at from through")
 """Relations of *look* that do not say where the thing is that one sees."""
-
-
-def filled_in(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks of a sentence in which each clause has its own words.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence in the order of the text.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
-    """
-    for rewrite in (
-        _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after,
-        _with_there_as_being, _with_repeated_predicates, _with_ordinals_apart, _without_clefts,
-        _without_clefts_of_places,
-        _with_places_looked_at, _with_exceptions, _without_verbs_of_comparison, _with_shared_references,
-        _without_order_in_lists, _without_colons_before_verbs, _without_kinds_of_members, _with_rows_after_places,
-        _with_denied_participles_apart,
-        _with_members_apart, _with_contrasts_at_subjects, _with_listed_places_apart,
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
 
 
 def with_pairs_apart(chunks: list[Chunk]) -> list[Chunk]:
@@ -168,7 +140,7 @@ def _without_verbs_of_comparison(chunks: list[Chunk]) -> list[Chunk]:
         for i, chunk in enumerate(chunks)
         if not (
             [type_at(chunks, i - 2), type_at(chunks, i - 1)] == ["THAN", "NP"]
-            and chunk.type in FINITE and type_at(chunks, i + 1) in _ENDS
+            and chunk.type in FINITE and type_at(chunks, i + 1) in ENDS
         )
     ]  # fmt: skip
 
@@ -482,3 +454,15 @@ def _with_members_apart(chunks: list[Chunk]) -> list[Chunk]:
             found.append(chunks[at])
             at += 1
     return found
+
+
+REWRITES = (
+    _with_denied_predicates, _without_ends_of_the_past, _without_one_of_each_side, _with_own_parts_after,
+    _with_there_as_being, _with_repeated_predicates, _with_ordinals_apart, _without_clefts,
+    _without_clefts_of_places,
+    _with_places_looked_at, _with_exceptions, _without_verbs_of_comparison, _with_shared_references,
+    _without_order_in_lists, _without_colons_before_verbs, _without_kinds_of_members, _with_rows_after_places,
+    _with_denied_participles_apart,
+    _with_members_apart, _with_contrasts_at_subjects, _with_listed_places_apart,
+)  # fmt: skip
+"""Rewritings that fill in what clauses share, in their order."""

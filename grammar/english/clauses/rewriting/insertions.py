@@ -30,27 +30,6 @@ _ENDEARMENTS = word_set(
 """Nouns by which a person is spoken to."""
 
 
-def without_insertions(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks without forms of address, adverbs between commas, insertions and openings.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks of the clauses alone.
-    """
-    for rewrite in (
-        _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes, _without_openings,
-        _without_times,
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
-
-
 def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
     """Return the chunks with what parentheses say about the noun before them at the end, as a phrase of its own.
 
@@ -257,3 +236,10 @@ def _without_insertions_between_dashes(chunks: list[Chunk]) -> list[Chunk]:
         if fits:
             return [*chunks[:i], *(emptied(c) for c in chunks[i : end + 1]), *chunks[end + 1 :]]
     return chunks
+
+
+REWRITES = (
+    _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes, _without_openings,
+    _without_times,
+)  # fmt: skip
+"""Rewritings that take out what stands apart, in their order."""

@@ -25,27 +25,6 @@ from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
 _MIDDLES = frozenset({"centre", "center", "middle"})
 
 
-def with_labels_as_things(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks in which labels are the things or the places that they name.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks in which each label stands where the thing or the place would in a clause.
-    """
-    for rewrite in (
-        _with_counted_labels, _with_labels_of_definitions, _with_labels_of_commands, without(_turn), _with_label_nouns,
-        _with_place_labels, _with_telegraphic_places, _with_labels_apart,
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
-
-
 def _with_labels_of_definitions(chunks: list[Chunk]) -> list[Chunk]:
     """Return *Tea pot: a vessel for tea, placed in the middle* as *tea pot placed in the middle*."""
     types = [type_at(chunks, k) for k in range(3)]
@@ -197,3 +176,10 @@ def _with_label_nouns(chunks: list[Chunk]) -> list[Chunk]:
         word = chunks[0].value[0].word
         chunks[0] = Chunk("NP", chunks[0].start, chunks[0].end, NounPhrase(chunks[0].span, word), chunks[0].span)
     return chunks
+
+
+REWRITES = (
+    _with_counted_labels, _with_labels_of_definitions, _with_labels_of_commands, without(_turn), _with_label_nouns,
+    _with_place_labels, _with_telegraphic_places, _with_labels_apart,
+)  # fmt: skip
+"""Rewritings of labels, in their order."""

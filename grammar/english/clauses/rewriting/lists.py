@@ -23,28 +23,6 @@ _OWNING = frozenset({"have", "need", "include", "contain", "get", "bring"})
 """Verbs with lists of what one has."""
 
 
-def with_places_of_members(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks in which each member of a list has its place.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks with the shared places repeated, and with what one member has after the list.
-    """
-    for rewrite in (
-        _with_accompanied_members, _with_first_of_owned, _with_things_of_several, _with_shared_spots,
-        _with_pronouns_of_lists, without(_bare_superlative), without(_partition), without(_count_apart),
-        _with_places_of_pairs,
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
-
-
 def _with_accompanied_members(chunks: list[Chunk]) -> list[Chunk]:
     """Return a list with what a member within it has at the end: *put the plate, cup with a lid, spoon and fork …*.
 
@@ -232,3 +210,11 @@ def _with_places_of_pairs(chunks: list[Chunk]) -> list[Chunk]:
         if pair and (types[i - 4 : i] == place or types[max(0, i - 6) : i] == [*place, "OF", "NP"]):
             return [*chunks[: i + 2], *chunks[i + 4 : i + 6], *chunks[i + 2 :]]
     return chunks
+
+
+REWRITES = (
+    _with_accompanied_members, _with_first_of_owned, _with_things_of_several, _with_shared_spots,
+    _with_pronouns_of_lists, without(_bare_superlative), without(_partition), without(_count_apart),
+    _with_places_of_pairs,
+)  # fmt: skip
+"""Rewritings of lists, in their order."""

@@ -36,27 +36,6 @@ _OF_TOOLS = frozenset({"handle", "blade", "tine", "prong", "bowl", "spout"})
 _GAPS = frozenset({"gap", "space", "distance", "clearance"})
 
 
-def with_plain_places(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks in which each place is a preposition with its noun.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks in which purposes, destinations, gaps and aims of parts are places.
-    """
-    for rewrite in (
-        _with_purposes_of_places, _with_measures_denied, _with_destinations, without(_place_taken), _with_gaps,
-        _with_aimed_parts, _with_shared_objects, _with_aims_of_subjects, _with_places_of_nearest,
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
-
-
 def _with_purposes_of_places(chunks: list[Chunk]) -> list[Chunk]:
     """Return *the top shelf is for glasses* as *glasses are on the top shelf*; also *is reserved for*."""
     cuts = [i for i, chunk in enumerate(chunks) if chunk.type == "CUT"]
@@ -311,3 +290,10 @@ def _with_gaps(chunks: list[Chunk]) -> list[Chunk]:
             away = Chunk("PREP", joint.start, joint.end, off, joint.span)
             found[i : at + 5] = [put, first, measure, away, second]
     return found
+
+
+REWRITES = (
+    _with_purposes_of_places, _with_measures_denied, _with_destinations, without(_place_taken), _with_gaps,
+    _with_aimed_parts, _with_shared_objects, _with_aims_of_subjects, _with_places_of_nearest,
+)  # fmt: skip
+"""Rewritings of places, in their order."""

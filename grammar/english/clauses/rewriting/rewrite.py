@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from deixis.grammar.english.chunking.chunk import Chunk
-from deixis.grammar.english.clauses.rewriting.asides import without_asides
-from deixis.grammar.english.clauses.rewriting.commands import with_plain_commands
-from deixis.grammar.english.clauses.rewriting.ellipses import filled_in
-from deixis.grammar.english.clauses.rewriting.insertions import without_insertions, without_parentheses
-from deixis.grammar.english.clauses.rewriting.labels import with_labels_as_things
-from deixis.grammar.english.clauses.rewriting.lists import with_places_of_members
-from deixis.grammar.english.clauses.rewriting.placings import with_plain_places
-from deixis.grammar.english.clauses.rewriting.word_order import in_plain_order
+from deixis.grammar.english.clauses.rewriting import (
+    asides,
+    commands,
+    ellipses,
+    insertions,
+    labels,
+    lists,
+    placings,
+    word_order,
+)
+
+STAGES = (ellipses, insertions, lists, labels, commands, asides, word_order, placings)
+"""Modules whose rewritings follow each other."""
 
 
 def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
@@ -28,10 +33,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     list of Chunk
         Chunks from which the clauses are cut. A chunk that was put in is empty and stands where its words would.
     """
-    chunks = filled_in(without_parentheses(chunks, text))
-    for stage in (
-        without_insertions, with_places_of_members, with_labels_as_things, with_plain_commands, without_asides,
-        in_plain_order, with_plain_places,
-    ):  # fmt: skip
-        chunks = stage(chunks)
+    chunks = insertions.without_parentheses(chunks, text)
+    for stage in STAGES:
+        for rewrite in stage.REWRITES:
+            chunks = rewrite(chunks)
     return chunks

@@ -43,28 +43,6 @@ _RESTING = frozenset({"lay", "stand", "hang", "rest", "sit", "lean"})
 """Verbs that turn a clause round: *and behind that, in a row, stand your letters*."""
 
 
-def in_plain_order(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks in the order of plain clauses: subject, verb, places.
-
-    Parameters
-    ----------
-    chunks
-        Chunks of a sentence.
-
-    Returns
-    -------
-    list of Chunk
-        Chunks in plain order, with the relative pronouns and subjects that the text leaves out.
-    """
-    for rewrite in (
-        _with_placed_subjects, _with_participles_of_posture, _without_resumed_subjects, _with_existential_have,
-        _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs, _with_contact_clauses,
-        without(_stranded), _with_places_before_verbs,
-    ):  # fmt: skip
-        chunks = rewrite(chunks)
-    return chunks
-
-
 def _with_placed_subjects(chunks: list[Chunk]) -> list[Chunk]:
     """Return *the placement of the spoon should be …* with the spoon as its subject."""
     for at in range(len(chunks) - 3):
@@ -273,3 +251,11 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
                 continue
         found.append(chunk)
     return found
+
+
+REWRITES = (
+    _with_placed_subjects, _with_participles_of_posture, _without_resumed_subjects, _with_existential_have,
+    _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs, _with_contact_clauses,
+    without(_stranded), _with_places_before_verbs,
+)  # fmt: skip
+"""Rewritings that put clauses into plain order, one after the other."""
