@@ -126,6 +126,27 @@ def turned_axes(yaw: float) -> NDArray[np.float64]:
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
+def yaw_of(turn: NDArray[np.float64]) -> float:
+    """Return the angle about the vertical of a rotation, that of the nearest rotation about the vertical alone.
+
+    Parameters
+    ----------
+    turn
+        Rotation matrix of shape (3, 3).
+
+    Returns
+    -------
+    float
+        Angle in radians, counter-clockwise seen from above.
+
+    Examples
+    --------
+    >>> round(yaw_of(turned_axes(0.5).T), 6)
+    0.5
+    """
+    return float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+
+
 CANDIDATE_ROUNDING = 1e-3
 """Tolerance by which the sum of rounded probabilities may exceed 1."""
 

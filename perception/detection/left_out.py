@@ -51,8 +51,8 @@ class Pieces:
 class Above:
     """Points of a view (n, 3) in the frame of the table, and which of them are above it.
 
-    ``least`` (n,) is the height in metres that an object has at least
-    at their distances. ``counts`` (n,) are the numbers of points of the cloud for which they stand.
+    ``least`` (n,) is the height in metres that an object has at least at their distances. ``counts`` (n,) are the
+    numbers of points of the cloud for which they stand.
     """
 
     points: NDArray[np.float64]
@@ -113,20 +113,21 @@ def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSet
     groups = above.groups(missed, settings)
     share = np.stack([np.bincount(groups[groups >= 0], which[groups >= 0]) for which in (aside, high, small)])
     kind = np.append(share.argmax(axis=0), -1)[groups]  # of the most points of each group
+    group_aside, group_high, group_small = (kind == number for number in range(3))
     notes = []
-    if (kind == 1).any():
+    if group_high.any():
         notes.append(
-            f"{above.counts[kind == 1].sum()} points are more than {100 * settings.reach:.0f} cm above the table,"
+            f"{above.counts[group_high].sum()} points are more than {100 * settings.reach:.0f} cm above the table,"
             " higher than objects are searched: a person, a lamp or a wall"
         )
-    if (kind == 0).any():
-        number = len(np.unique(groups[kind == 0]))
+    if group_aside.any():
+        number = len(np.unique(groups[group_aside]))
         some, were = ("a piece", "was") if number == 1 else (f"{number} pieces", "were")
-        notes.append(f"{some} beside the table, of {above.counts[kind == 0].sum()} points, {were} left out")
-    small = (kind == 2) | (small & (kind < 0))
+        notes.append(f"{some} beside the table, of {above.counts[group_aside].sum()} points, {were} left out")
+    small = group_small | (small & (kind < 0))
     discarded, total = (int(above.counts[which].sum()) for which in (small, small | (pieces.things >= 0)))
     many = discarded >= settings.least_points and discarded > settings.notes.min_discarded_share * total
-    if many or (kind == 2).any():
+    if many or group_small.any():
         notes.append(
             f"{discarded} of the {total} points above the table are in pieces too small or too low for objects"
         )

@@ -307,10 +307,10 @@ class _Search:
             thing = np.full(self.n, NOTHING, dtype=np.int64)
             for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
                 thing[row] = column if column < self.m else NOTHING
-            nobody = np.full((1, self.n), NOTHING, dtype=np.int64)
+            empty = np.full((1, self.n), NOTHING, dtype=np.int64)
             for seen in (State.FILLED, State.DISPLACED):
                 state = np.where(thing == NOTHING, int(State.MISSING), int(seen)).astype(np.int64)
-                yield _States(thing[None], state[None], nobody)
+                yield _States(thing[None], state[None], empty)
 
     def _with_facts(self) -> Array:
         """Return the looks of each role and thing, and the best value of each fact about it with any other thing."""

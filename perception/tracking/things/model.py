@@ -12,7 +12,7 @@ from deixis.perception.detection.detect import Detection
 from deixis.perception.detection.outline import Circle, oriented_box, upright_box
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.viewpoint import moved
-from deixis.perception.scene import OrientedBox
+from deixis.perception.scene import OrientedBox, yaw_of
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Table
 from deixis.perception.tracking.things.rectangle import is_rectangular
@@ -225,7 +225,7 @@ def extended(
     tints = None
     if model.cloud.colours is not None:
         tints = np.concatenate([model.cloud.colours, np.clip(colours, 0, 255).astype(np.uint8)])
-    yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+    yaw = yaw_of(turn)
     centre = tuple(((np.array(around.centre) - pose[:3, 3]) @ turn).tolist())
     oriented = OrientedBox(centre, around.yaw - yaw, around.extents)
     return Model(PointCloud((local - middle).astype(np.float32), tints), (box[1] - box[0]) / 2, oriented, pose)

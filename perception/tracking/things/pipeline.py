@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.settings import OutlineSettings
-from deixis.perception.scene import OrientedBox, turned_axes
+from deixis.perception.scene import OrientedBox, turned_axes, yaw_of
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import State, TrackedThing
@@ -491,7 +491,7 @@ class Pipeline:
         if not MIN_TILT < np.arccos(np.clip(turn[2, 2], -1.0, 1.0)) < MAX_TILT:
             return
         flat = self.pose.copy()
-        flat[:3, :3] = turned_axes(float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))).T
+        flat[:3, :3] = turned_axes(yaw_of(turn)).T
         if abs(flat[2, 3] - self.half[2]) < ON_TABLE:
             flat[2, 3] = self.half[2]
         flat, _ = sight.shifted(flat, self.oriented, self._few(own))
@@ -871,7 +871,7 @@ class Pipeline:
             Boxes, cloud and pose in the table's frame.
         """
         turn = self.pose[:3, :3]
-        yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+        yaw = yaw_of(turn)
         along, (before, after) = turned_axes(self.oriented.yaw)[0], self._unseen
         shift, more = (after - before) / 2 * along, before + after
         length, width, height = self.oriented.extents

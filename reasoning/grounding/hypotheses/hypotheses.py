@@ -289,7 +289,7 @@ def weigh(
         likelihood = CHANCE_SHARE * fit.chance
         if there is not None:
             loss = max(0.0, usual - there.kinds)
-            likelihood = FitEvidence(there.log_total - alone + loss, most, fit.kinds, loss).here
+            likelihood = replace(fit, facts=there.log_total - alone + loss, loss=loss).here
         weights.append(math.log(side.prior) + likelihood)
     weights.append(elsewhere)
     shares = np.exp(np.array(weights) - _log_sum(weights)).tolist()

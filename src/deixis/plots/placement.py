@@ -124,9 +124,7 @@ class Box(NamedTuple):
         ndarray
             Areas of shape (n,).
         """
-        width = np.minimum(self.right, boxes[:, 2]) - np.maximum(self.left, boxes[:, 0])
-        height = np.minimum(self.high, boxes[:, 3]) - np.maximum(self.low, boxes[:, 1])
-        common: NDArray[np.float64] = np.maximum(width, 0) * np.maximum(height, 0)
+        common: NDArray[np.float64] = _shared(np.array([self]), boxes)[0]
         return common
 
     def in_the_way_of(self, boxes: NDArray[np.float64]) -> int:

@@ -11,8 +11,8 @@ from deixis.lsp.english import (
     english_fixes,
     english_hover,
     english_mentions,
-    english_problems,
     english_noun_at,
+    english_problems,
     english_rename,
 )
 
