@@ -282,7 +282,7 @@ class Assembly:
         self.borne = held.phrase if held is not None and held.phrase.head else None
         for i, verb in enumerate(verbs):
             front = predications if i == 0 else ()
-            none = subject.phrase.pronoun == "nothing" or subject.phrase.determiner == "no"
+            none = subject.phrase.pronoun in ("nothing", "none") or subject.phrase.determiner == "no"
             if none and verb.thing is None and verb.group.kind in ("other", "unknown"):
                 misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
                 continue
@@ -313,15 +313,15 @@ class Assembly:
                 or (verb.group.lemma == "find" and verb.group.positive)
             ):
                 kept = {"keep"} if subject.phrase.pronoun in ("me", "we") else {"leave", "keep"}
-                placed = person and verb.group.lemma in _PLACING - kept and verb.group.past
+                placed = person and verb.group.lemma in _PLACING - kept and verb.group.past and not verb.group.modal
                 if placed and " had " not in f" {self.text[slice(*verb.span)]} " and not self._was_undone(span):
                     verb = replace(verb, group=replace(verb.group, past=False))  # 'I stood the candle on the plate'
                 if verb.group.lemma in _PLACING and _is_plan(verb.group, subject.phrase):
                     verb = replace(verb, group=replace(verb.group, modal="might"))
                 moved, thing = self._of_the_thing(verb, subject)
-                if subject.phrase.pronoun == "nothing" and moved.group.modal in _ALLOWING:
+                if none and moved.group.modal in _ALLOWING:
                     moved = replace(moved, group=replace(moved.group, modal="must", positive=False))
-                elif subject.phrase.pronoun == "nothing":
+                elif none:
                     misunderstood(span, "a denial of all does not say where it is", "say where it is, or is not")
                     continue
                 if not moved.predications and not front and verb.group.lemma not in _MEETING:
