@@ -7,7 +7,7 @@ from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
-from deixis.grammar.english.vocabulary.adjectives import is_adjective
+from deixis.grammar.english.vocabulary.adjectives import EMPTY, is_adjective
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, IS_FORMS, MODALS, NEGATIONS, PRONOUNS
 from deixis.grammar.english.vocabulary.nouns import EVENTS, PEOPLE, last_word
 from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
@@ -55,9 +55,11 @@ class JointChunker(VerbChunker):
             return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
         if norm in ("before", "after") and self._is_event(at + 1):
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'before your first shift'
-        excepts = (norm, after) in (("apart", "from"), ("aside", "from")) and previous in ("", "COMMA", "CUT")
-        if excepts:
-            return Chunk("PREP", at, at + 2, Relator(Preposition("apart from", "-")))  # 'apart from the lid, …'
+        if (norm, after) in _EXCEPTING and (
+            (previous in ("", "COMMA", "CUT") and norm in ("apart", "aside"))
+            or (previous == "ADJP" and self.chunks[-1].value[-1].word in EMPTY)
+        ):  # 'apart from the lid, …', 'the tray is empty but for a spoon'
+            return Chunk("PREP", at, at + 2, Relator(Preposition("except for", "-")))
         agent = after in ("a", "an") and self.norms[at + 2] in PEOPLE and previous == "NP"
         if norm == "by" and (agent or self._is_name(at + 1)):
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'a seascape by Turner'
@@ -277,6 +279,9 @@ _SUBORDINATING = {
 _ENSURING = frozenset({"make sure", "make sure that", "be sure that", "ensure that", "note that", "remember that",
                        "check that", "see to it that", "do not forget that", "take care that"})  # fmt: skip
 """Beginnings of a command after which a clause is a fact."""
+
+_EXCEPTING = frozenset({("apart", "from"), ("aside", "from"), ("but", "for")})
+"""Words before what is excepted."""
 
 _WHOEVER = word_set("otherwise whoever whatever whichever whomever")
 """Words for any person or thing of which the clause holds: it is a condition."""

@@ -11,6 +11,7 @@ from deixis.grammar.english.discourse.mentions import Mentions
 from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS, HOLLOW_SURFACES
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.vocabulary.adjectives import EMPTY
 from deixis.grammar.english.vocabulary.nouns import (
     HOLDERS,
     PEOPLE,
@@ -39,7 +40,8 @@ EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"
 
 CONTAINING = frozenset({"contains", "contain", "containing"})
 
-HOLDING = frozenset({"holds", "hold", "holding"})
+HOLDING = frozenset({"holds", "hold", "holding"}) | EMPTY
+"""Words of clauses that say what a vessel holds: *it is empty except for a spoon*."""
 
 SUPPORTS = frozenset(
     [

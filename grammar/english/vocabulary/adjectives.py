@@ -59,6 +59,9 @@ _MATERIAL_NOUNS = word_set(
 COLOUR_SHADES = frozenset({"light", "dark", "pale", "bright", "deep", "medium", "off"})
 
 
+EMPTY = frozenset({"empty", "bare", "clear"})
+"""Words for what has nothing on it or in it."""
+
 _IRREGULAR_DEGREES = {
     "better": ("good", Degree.COMPARATIVE),
     "best": ("good", Degree.SUPERLATIVE),

@@ -8,6 +8,7 @@ from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Re
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import ENDS, cut, end_before, put_in, type_at
 from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.adjectives import EMPTY
 from deixis.grammar.english.vocabulary.nouns import PARTS
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -415,9 +416,20 @@ def _with_places_looked_at(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *all but one clause* as two: *all spoons are in it except the ladle, which is in the sink*."""
+    """Return *all but one clause* as two: *all spoons are in it except the ladle, which is in the sink*.
+
+    *It is empty except for a spoon* is *it holds a spoon*.
+    """
     for i, chunk in enumerate(chunks):
         excepts = chunk.type == "PREP" and chunk.value.preposition.phrase in ("except", "except for", "besides")
+        comma = end_before(chunks, i, frozenset({"COMMA"}))
+        for place, things in ((i - 3, chunks[i + 1 :]), (comma + 1, chunks[i + 1 : comma])):
+            empty = excepts and [type_at(chunks, place + k) for k in range(3)] == ["NP", "BE", "ADJP"]
+            if empty and chunks[place + 2].value[-1].word in EMPTY and chunks[place + 1].value.positive:
+                be = chunks[place + 1]
+                holds = replace(be, type="TVERB", value=replace(be.value, lemma="hold", kind="transitive", form="s"))
+                rest = [] if place < i else chunks[place + 3 :]
+                return [*chunks[: min(place, i)], chunks[place], holds, *_with_exceptions([*things, *rest])]
         bare = excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in JOINT_TYPES | {""}
         first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
         nothing = type_at(chunks, first) == "NP" and chunks[first].value.pronoun == "nothing"
