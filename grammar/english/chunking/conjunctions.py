@@ -58,7 +58,7 @@ class JointChunker(VerbChunker):
         if (norm, after) in _EXCEPTING and (
             (previous in ("", "COMMA", "CUT") and norm in ("apart", "aside"))
             or (previous == "ADJP" and self.chunks[-1].value[-1].word in EMPTY)
-        ):  # 'apart from the lid, …', 'the tray is empty but for a spoon'
+        ):  # 'apart from the lid, …', 'the tray is empty apart from a spoon'
             return Chunk("PREP", at, at + 2, Relator(Preposition("except for", "-")))
         agent = after in ("a", "an") and self.norms[at + 2] in PEOPLE and previous == "NP"
         if norm == "by" and (agent or self._is_name(at + 1)):

@@ -585,7 +585,7 @@ class NounFinder:
             owns = after in POSSESSIVES and after != "whose"
             return not plural and not (after in DETERMINERS or after in NUMBERS or owns)
         if form.form == "base" and before in ADVERBS and self.is_determiner(at + 1) and not is_adjective(before):
-            return False  # 'nobody ever put the fork on it'
+            return False  # 'the child really put the fork on it'
         if before == "never" and form.form == "base" and self._predicate_follows(at):
             return False  # 'bottles never stand on the towel'
         if at == 0 or before in ("never", "always", "not", ",", "and", "then", ".", ";", ":", "please"):

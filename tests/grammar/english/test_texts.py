@@ -283,7 +283,7 @@ def asserted(text: str) -> list[str]:
         ("Nothing is on the box except the clock.", ["none_on(box)", "on(clock, box)"]),
         ("The box is empty except for a ball and the clock.", ["inside(ball, box)", "inside(clock, box)"]),
         ("Apart from the spoon, the saucer is bare.", ["on(spoon, saucer)"]),
-        ("The shelf is clear but for the jug at its left end.", ["end(jug, shelf, 'left')"]),
+        ("The shelf is clear aside from the jug at its left end.", ["end(jug, shelf, 'left')"]),
         ("In a two-player game the pegs stay in the box.", []),
         ("In the event of rain the mat is in front of the box.", []),
         ("I built a boat for the fair and it stands on the box.", ["on(boat, box)"]),
