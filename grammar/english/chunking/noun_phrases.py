@@ -197,6 +197,7 @@ class NounChunker(ModifierFinder):
                 self.is_noun(at + 1)
                 or self.number(at + 1) is not None
                 or after in ORDINALS
+                or after == "very"
                 or self.adjective_before_noun(at + 1)
             ):
                 if not (after in self._verbs and self._verbs[after].form in ("s",)):

@@ -147,6 +147,12 @@ class RelatorChunker:
             kind = "WITH"
         return Chunk(kind, at, end, Relator(preposition, tuple(adverbs), rank, positive))
 
+    def _verb_before_subject(self, at: int) -> bool:
+        """Return True for a verb of posture before a subject, which may look like a plural: *stands the cup*."""
+        form = self._verbs.get(self.norms[at])
+        third = form is not None and form.form == "s" and form.kind == "posture"
+        return third and self.nouns.is_determiner(at + 1)
+
     def _match(self, at: int) -> tuple[int, str, Preposition] | None:
         """Return the end, the type and the relation of the longest phrase that the words after it allow."""
         if self.norms[at] in ("left", "right", "close", "next", "near", "closest", "nearest", "closer") and (
@@ -190,6 +196,8 @@ class RelatorChunker:
             takes_object = self.nouns.starts(end) or self.norms[end] == "which"
             takes_object = takes_object or (self.norms[end] == "that" and self.nouns.is_determiner(end + 1))
             takes_object = takes_object or self._turned_after(end)
+            if end > at + 1 and preposition.phrase == "in between" and self._verb_before_subject(end):
+                takes_object = False  # 'in between stands the cup'
             if self.norms[at] == "to" and end == at + 1 and self._infinitive(end):
                 return None
             shorter_alone = (

@@ -55,6 +55,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
+from deixis.grammar.english.vocabulary.things import can_have_a_place
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
@@ -207,11 +208,12 @@ class Discourse(Statements):
             if handled is not None:
                 self.references.recent.insert(0, Focus(handled, [], None, sentence))
             return
-        if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
+        missing = all(p.determiner == "no" and self._is_named_thing(p.head) for p in listed)
+        if not missing and not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
             return
         if any(last_word(p.head) in ("lot", "content", "list", "thank", "note", "inventory") for p in listed):
             return
-        if phrase.determiner == "no" and phrase.head:
+        if missing or (phrase.determiner == "no" and phrase.head):
             self._nothing(phrase, Clause(phrase, phrase.predicates, phrase.span))
             return
         subject: Entity | None = None
@@ -241,6 +243,10 @@ class Discourse(Statements):
             whole = self._introduce(replace(phrase, predicates=()))
             if whole is not None:
                 self._say(whole, phrase.predicates, phrase)
+
+    def _is_named_thing(self, noun: str) -> bool:
+        """Return True for a known noun or a compound that names a thing: *no flash unit*, but not *no problem*."""
+        return bool(noun) and (self.nouns.knows(last_word(noun)) or (" " in noun and can_have_a_place(noun, self.nouns)))
 
     def _with_shared_places(self, listed: tuple[NounPhrase, ...]) -> Iterator[NounPhrase]:
         """Yield the things of a note; *oil and vinegar behind it* are one coordination, both behind it."""

@@ -81,6 +81,9 @@ COMPARTMENTS = frozenset(
 """Nouns of places in a thing, which stand for the thing: *in slot 3 of the rack*."""
 
 
+_SIGNS = frozenset({"sign", "trace", "hint"})
+"""Nouns of what shows that a thing is there."""
+
 ARRANGEMENTS = {"row": "row", "line": "row", "circle": "circle", "ring": "circle"}
 """Claim about the things of a phrase by its head: *a row of pawns*."""
 
@@ -269,6 +272,8 @@ class Mentions(Drafting, ABC):
             self._add("count", (group,), (), value=str(phrase.count))
 
     def _absent(self, phrase: NounPhrase) -> None:
+        if phrase.of is not None and last_word(phrase.head) in _SIGNS:
+            phrase = phrase.of  # 'no sign of the pen'
         entity = self.references.find(replace(phrase, determiner="the", predicates=()))
         if entity is not None:
             entity.absent = True

@@ -1020,7 +1020,7 @@ class References:
         return None
 
     def last_two_subjects(self, besides: Entity | None) -> Entity | None:
-        """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*.
+        """Return the two subjects of the last clause, or those of two clauses of one sentence.
 
         Parameters
         ----------
@@ -1030,9 +1030,13 @@ class References:
         Returns
         -------
         Entity or None
-            Group of the two; None if the last two clauses are not of one sentence, or have no such subjects.
+            Group of the two, as of *the pump is left and the motor right of it*; None if the last two clauses are not
+            of one sentence, or have no such subjects.
         """
         last = [f for f in self.recent[:3] if f.subject is not None and f.subject is not besides][:2]
+        group = last[0].subject.itself if last and last[0].subject is not None else None
+        if group is not None and len(group.members) == 2:
+            return group  # 'the jug and the tin are on the tray, and in between stands the cup'
         if len(last) < 2 or last[0].sentence != last[1].sentence:
             return None
         if last[0].others and last[0].others != last[1].others:

@@ -85,7 +85,7 @@ posture: slant, topple, collapse, cling clings clung clung clinging, intrude, pe
 posture: dwell dwells dwelt dwelt dwelling
 posture: dock, hitch, tether, latch, snag, interleave, immerse, submerge, chuck, fling flings flung flung flinging
 posture: toss, pop, plump, plant, deposit, dab, smear, hammer, tap, bung, whack, thumbtack, staple, stitch, peg
-transitive: span, cradle, accommodate, sport, boast, crown, cap, skirt, fringe, ring
+transitive: span, adorn, grace, cradle, accommodate, sport, boast, crown, cap, skirt, fringe, ring
 other: fly flies flew flown flying, swim swims swam swum swimming, crawl, leap leaps leapt leapt leaping, jump
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
 """
@@ -125,6 +125,8 @@ TRANSITIVE_RELATIONS = {
     "encircle": ("around", False),
     "straddle": ("across", False),
     "occupy": ("inside", False),
+    "adorn": ("inside", False),
+    "grace": ("inside", False),
     "fill": ("inside", False),
     "span": ("across", False),
     "cradle": ("inside", True),

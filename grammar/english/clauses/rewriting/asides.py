@@ -447,20 +447,6 @@ def _followers(chunks: list[Chunk], at: int) -> Run | None:
     return end, replace(chunks[at], type="AND", value="and")
 
 
-def _side_up(chunks: list[Chunk], at: int) -> Run | None:
-    """Find which side is up: *the tokens go beside the board, letter side up*."""
-    types = [type_at(chunks, at + k) for k in range(3)]
-    if types[:2] != ["COMMA", "NP"] or types[2] not in ("ADVERB", "ADV"):
-        return None
-    side = chunks[at + 1].value
-    direction = chunks[at + 2].value if types[2] == "ADVERB" else chunks[at + 2].value.preposition.phrase
-    bare = side.determiner is None and side.owner is None and " " in side.head and last_word(side.head) == "side"
-    if not bare or str(direction).split()[-1:] not in (["up"], ["down"], ["upward"], ["downward"], ["upwards"]):
-        return None
-    leave_out(chunks[at + 1 : at + 3], "which side is up does not say where something is")
-    return at + 3, None
-
-
 def _agent(chunks: list[Chunk], at: int) -> Run | None:
     """Find by whom or by what something is done: *it is fixed to the frame by a bolt*, but not *placed by the door*."""
     by = chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "by"
@@ -533,7 +519,7 @@ def _replacement(chunks: list[Chunk], at: int) -> Run | None:
 
 REWRITES = (
     without(_framing), without(_manner), without(_consequence), without(_compared_quality), without(_examples),
-    without(_side_up), without(_first_of_two_commands), without(_used_things), without(_followers),
+    without(_first_of_two_commands), without(_used_things), without(_followers),
     without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement),
     without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),
     without(_measures_apart), without(_beneficiary), without(_free_place), _without_comments, without(_search),

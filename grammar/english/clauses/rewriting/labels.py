@@ -19,7 +19,7 @@ from deixis.grammar.english.clauses.rewriting.editing import (
 )
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, PARTS, SURFACES, VESSELS, last_word
-from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Preposition
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, Preposition
 from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
 
 _MIDDLES = frozenset({"centre", "center", "middle"})
@@ -57,6 +57,21 @@ def _turn(chunks: list[Chunk], at: int) -> Run | None:
     turn = at == 1 and [type_at(chunks, k) for k in range(3)] == ["NP", "NP", "COLON"]
     ranked = turn and not chunks[at].value.head and chunks[at].value.determiner is None
     return (at + 1, None) if ranked and any(a.rank for a in chunks[at].value.adjectives) else None
+
+
+def _side_up(chunks: list[Chunk], at: int) -> Run | None:
+    """Find which side is up: *the tokens go beside the board, letter side up*."""
+    types = [type_at(chunks, at + k) for k in range(3)]
+    if types[:2] not in (["COMMA", "NP"], ["COLON", "NP"]) or types[2] not in ("ADVERB", "ADV"):
+        return None
+    side = chunks[at + 1].value
+    direction = chunks[at + 2].value if types[2] == "ADVERB" else chunks[at + 2].value.preposition.phrase
+    bare = side.determiner is None and side.owner is None and " " in side.head and last_word(side.head) == "side"
+    if not bare or str(direction).split()[-1:] not in (["up"], ["down"], ["upward"], ["downward"], ["upwards"]):
+        return None
+    leave_out(chunks[at + 1 : at + 3], "which side is up does not say where something is")
+    labelled = types[0] == "COLON"  # 'camera: lens side up, on the mat'
+    return at + 3 + (labelled and type_at(chunks, at + 3) == "COMMA"), chunks[at] if labelled else None
 
 
 def _with_counted_labels(chunks: list[Chunk]) -> list[Chunk]:
@@ -149,6 +164,21 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_named_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *in the corner, the far left one* as *in the far left corner*."""
+    for i in range(2, len(chunks)):
+        types = [type_at(chunks, i + k) for k in range(-2, 2)]
+        if types != ["PREP", "NP", "COMMA", "NP"] or type_at(chunks, i + 2) not in ENDS:
+            continue
+        place, one = chunks[i - 1].value, chunks[i + 1].value
+        named = one.pronoun == "one" and one.determiner == "the" and bool(one.adjectives) and one.count is None
+        directed = named and all(a.word in DIRECTION_WORDS for a in one.adjectives)
+        if directed and place.head in PLACE_NOUNS and not place.adjectives and place.of is None:
+            value = replace(place, adjectives=one.adjectives)
+            return [*chunks[: i - 1], replace(chunks[i - 1], value=value), *_with_named_places(chunks[i + 2 :])]
+    return chunks
+
+
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
     """End the clause of a note before what is said about a part: *rear left corner, lid closed*."""
     for i, chunk in enumerate(chunks):
@@ -179,7 +209,8 @@ def _with_label_nouns(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_counted_labels, _with_labels_of_definitions, _with_labels_of_commands, without(_turn), _with_label_nouns,
-    _with_place_labels, _with_telegraphic_places, _with_labels_apart,
+    without(_side_up), _with_counted_labels, _with_labels_of_definitions, _with_labels_of_commands, without(_turn), _with_label_nouns,
+    _with_place_labels, _with_telegraphic_places, _with_named_places,
+    _with_labels_apart,
 )  # fmt: skip
 """Rewritings of labels, in their order."""

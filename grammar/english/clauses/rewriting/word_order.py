@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import ENDS, PREDICATES, Run, end_before, put_in, type_at, without
 from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 
 _FOUND_OR_PUT = frozenset(
     {
@@ -197,6 +198,22 @@ def _names_thing(phrase: NounPhrase) -> bool:
     return bool(phrase.head) and not is_place(phrase)
 
 
+def _with_verbs_after_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with a verb of posture that looks like a plural: *in between stands the cup*."""
+    for i in range(1, len(chunks) - 1):
+        if [chunk.type for chunk in chunks[i - 1 : i + 2]] != ["ADV", "NP", "NP"]:
+            continue
+        word, subject = chunks[i].value, chunks[i + 1].value
+        form = verb_forms().get(f"{word.head}s") if word.plural and chunks[i].end == chunks[i].start + 1 else None
+        begins = type_at(chunks, i - 2) in JOINT_TYPES | {"", "ADVERB"}
+        ends = type_at(chunks, i + 2) in JOINT_TYPES | {"", "WITH", "PREP"}
+        if form is None or form.form != "s" or form.lemma not in _RESTING or not (begins and ends):
+            continue
+        if subject.determiner is not None or subject.owner is not None or subject.count is not None:
+            chunks[i] = replace(chunks[i], type="VERB", value=VerbGroup(form.lemma, form.kind, "s"))
+    return chunks
+
+
 def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
     """Return the chunks with the relative pronoun of *the book I am reading* put in."""
     found: list[Chunk] = []
@@ -254,7 +271,7 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_placed_subjects, _with_participles_of_posture, _without_resumed_subjects, _with_existential_have,
+    _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture, _without_resumed_subjects, _with_existential_have,
     _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs, _with_contact_clauses,
     without(_stranded), _with_places_before_verbs,
 )  # fmt: skip

@@ -13,7 +13,7 @@ a cup, a distance in a photograph) adds nothing.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
 
@@ -65,6 +65,9 @@ SIZE_WORDS = {
 
 SIZE_AMONG_THINGS = 0.5
 """Probability that a word of size compares a thing with the other things, instead of with its own kind."""
+
+BEFORE_ON_EACH_SIDE = 0.5
+"""Degree of *on each side* for things in front of and behind a third one, instead of left and right of it."""
 
 EACH_OTHER = {
     "near_each_other": "near",
@@ -137,7 +140,7 @@ def claim_tables(
     pairs: dict[tuple[int, int], Array] = {}
     if 1 < len(boxes) <= MAX_THINGS:
         scene = ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric, surface, poses)
-        for claim in claims:
+        for claim in (*claims, *_flanked(claims)):
             if any(name not in index for name in (*claim.subjects, *claim.arguments)):
                 continue
             if claim.relation == "ordinal":
@@ -165,6 +168,18 @@ def claim_tables(
         table[:] = ratio
         np.fill_diagonal(table, 0.0)
     return ClaimTables(claim_ratios, np.array(list(pairs), dtype=np.int64).reshape(-1, 2), tables)
+
+
+def _flanked(claims: Sequence[Claim]) -> Iterator[Claim]:
+    """Yield what claims of two things on each side of a third one say together: the third one is between them."""
+    sides: dict[tuple[str, ...], list[Claim]] = {}
+    for claim in claims:
+        if claim.relation == "each_side" and claim.positive and claim.arguments:
+            sides.setdefault(claim.arguments, []).append(claim)
+    for flanked, found in sides.items():
+        things = tuple(dict.fromkeys(subject for claim in found for subject in claim.subjects))
+        if len(things) == 2:
+            yield replace(found[0], relation="between", subjects=flanked, arguments=things)
 
 
 def _chances(unary: Array) -> Array:
@@ -383,6 +398,8 @@ class ClaimDegrees:
             lean = lean_on_surface(self.boxes, self.surface)
             near, ahead = (np.asarray(place_degree(place, "near", lean)) for place in ("part", "middle"))
             return np.asarray(near * ahead)
+        if term in ("left", "right") and value is not None:  # of the viewer
+            return place_degree("part", term, lean_on_surface(self.boxes, self.surface))
         if term in MEASURES:
             measure, sign = MEASURES[term]
             return _extreme(self._without_surface(sign * measure(self.boxes)))
@@ -465,6 +482,11 @@ class ClaimDegrees:
             return None if lean is None else np.asarray(lean * beside)
         if term in AIMING and self.poses is not None:
             return aim_degrees(term, value, self.poses, self.boxes)
+        if term == "each_side":
+            beside, before = (
+                np.maximum(self.relation(word), self.relation(word).T) for word in ("left", "in_front")
+            )
+            return np.asarray(np.maximum(beside, BEFORE_ON_EACH_SIDE * before))
         if term in ("nearest", "farthest"):
             sign = -1 if term == "nearest" else 1
             gaps = sign * self.distances

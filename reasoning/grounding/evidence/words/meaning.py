@@ -194,11 +194,13 @@ def graded_terms() -> dict[str, tuple[Term, ...]]:
             Term(feature, (-1.0, 0.0, 0.2, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING)
             for feature in ("rise", "trail")
         ),
-        # prototype: within the outline, and reaching down; one half: half outside, or only at the rim
+        # prototype: within the outline, reaching down, and not lower than the object; one half: half outside, only at
+        # the rim, or lower by an eighth of the smaller height
         "containment": (
             Term("across", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
             Term("along", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
             Term("depth", (-0.5, 0.1, 0.4, 2.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
+            Term("floor", (-0.4, -0.125, 0.0, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
         ),
         # prototype: no gap; one half: a gap of a twentieth of the mean size
         "contact": (

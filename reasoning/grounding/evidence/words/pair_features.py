@@ -306,12 +306,19 @@ def _height(pairs: PairGeometry) -> View:
 
 
 def _containment(pairs: PairGeometry) -> View:
-    """Return the shares of the subject within the object; with heights, how far it reaches below the rim."""
+    """Return the shares of the subject within the object; with heights, how far it reaches below the rim.
+
+    With heights, ``floor`` tells how far the underside of the subject is above that of the object, in units of the
+    smaller height.
+    """
     found = {"across": pairs.inside[:, :, 0], "along": pairs.inside[:, :, 1]}
     if pairs.boxes.shape[2] == 3:
         deep = pairs.objects[None, :, 1, 2] - pairs.boxes[:, None, 0, 2]
         height = _extents(pairs.objects)[None, :, 2]
         found["depth"] = np.clip(np.divide(deep, height, out=np.zeros_like(deep), where=height > 0), -1.0, 2.0)
+        lower = np.minimum(height, _extents(pairs.boxes)[:, None, 2])
+        above = pairs.boxes[:, None, 0, 2] - pairs.objects[None, :, 0, 2]
+        found["floor"] = np.clip(np.divide(above, lower, out=np.zeros_like(above), where=lower > 0), -1.0, 1.0)
     return found
 
 
@@ -361,7 +368,8 @@ GRADED_VIEWS: Mapping[str, Callable[[PairGeometry], View]] = {
 }
 """Features of words beside the ten. ``excess`` is the difference of a measure of both as a share of the sum,
 ``coaxial`` the agreement of their long axes, ``aim`` an angle in radians (``UNKNOWN_AIM`` if unknown), ``lateral`` an
-offset across, ``lift`` a vertical gap and ``depth`` the share of the object's height that the subject reaches down."""
+offset across, ``lift`` a vertical gap, ``depth`` the share of the object's height that the subject reaches down, and
+``floor`` the height of the subject's underside above that of the object."""
 
 REVERSED = {
     "below": "above",
