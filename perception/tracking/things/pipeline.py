@@ -125,6 +125,8 @@ class Pipeline:
     beneath: Beneath | None = field(default=None, init=False)
     settled_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it last came to rest."""
+    there_at: float = field(default=-np.inf, init=False)
+    """Time in seconds of the last frame that showed a part of it where it rests."""
     completed: bool = field(default=False, init=False)
     """True if it was completed during its present rest, from the present side of the table."""
     completed_at: float = field(default=-np.inf, init=False)
@@ -812,7 +814,7 @@ class Pipeline:
             Share of its visible pixels that agree with the reference.
         """
         self.state, self.seen_at, self.found, self.agreement = "seen", at, True, agreement
-        self._carried = []
+        self.there_at, self._carried = at, []
 
     def is_still(self, at: float) -> bool:
         """Return True if the thing has not moved for a while.
