@@ -26,6 +26,9 @@ MIN_GAIN, LEAST_EXPOSED, SEEN_WELL = 0.15, 0.1, 0.5
 """Minimum gain of agreement by which a thing that is mostly hidden has moved, the minimum share of its points that
 nothing hides where it rested, for this comparison, and the minimum share that is seen elsewhere without it."""
 
+TAKEN_AWAY = 0.05
+"""Largest agreement of the points that nothing hides at which a thing whose place is mostly hidden is taken away."""
+
 MOVED_FIT = 0.6
 """Minimum agreement elsewhere at which a thing whose place is mostly hidden has moved."""
 
@@ -202,9 +205,11 @@ def follow(
         ):
             start(thing, things, reference)
             thing.moved_to(sighting.found.pose, seen.at, sighting.fit)
-        else:
-            thing.rest_again()
-            thing.lost()
+            continue
+        thing.rest_again()
+        thing.lost()
+        if is_by_hand:
+            take_away(thing, things, table, seen, same, hands)
 
 
 def carry(thing: Pipeline, hands: Hands) -> None:
@@ -223,6 +228,39 @@ def carry(thing: Pipeline, hands: Hands) -> None:
     step = hands.carried(thing.pose[:3, 3], thing.reach)
     if step is not None:
         thing.carry(step)
+
+
+def take_away(
+    thing: Pipeline, things: Things, table: Table, seen: Observation, same: NDArray[np.bool_], hands: Hands
+) -> None:
+    """Let a thing move with a hand that hides it, if what is seen of its place shows that it is not there any more.
+
+    It has moved as the hand has since the last frame that showed a part of the thing at its place.
+
+    Parameters
+    ----------
+    thing
+        Thing at rest whose place is mostly hidden.
+    things
+        All things.
+    table
+        The table.
+    seen
+        The frame.
+    same
+        Mask (r, c) of the pixels that are unchanged.
+    hands
+        The hands in the frame.
+    """
+    agreement, exposed = _seen_where_it_rested(thing, table, seen, same)
+    if agreement > MOVED_FIT:
+        thing.there_at = seen.at
+    if exposed <= LEAST_EXPOSED or agreement >= TAKEN_AWAY:
+        return
+    way = hands.moved_since(thing.there_at, thing.pose[:3, 3], thing.reach)
+    if way is not None and np.linalg.norm(way) > MIN_WAY:
+        start(thing, things, table.reference)
+        thing.carry(way)
 
 
 def let_go(things: Things, at: float, hand_at: float, settings: TrackingSettings) -> tuple[Pipeline, ...]:

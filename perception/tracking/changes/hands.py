@@ -134,6 +134,34 @@ class Hands:
         step: NDArray[np.float64] = self._steps[int(np.nanargmin(away))]
         return step
 
+    def moved_since(self, since: float, place: NDArray[np.float64], size: float) -> NDArray[np.float64] | None:
+        """Return how the hand that was at a thing at a time has moved since then.
+
+        Parameters
+        ----------
+        since
+            Time in seconds.
+        place
+            Middle of the thing at this time, shape (3,), in metres.
+        size
+            Distance in metres from the middle to the farthest side of the thing.
+
+        Returns
+        -------
+        ndarray or None
+            Movement of shape (3,) in metres; None if no hand was within reach, or if it was lost from sight.
+        """
+        start = tip = None
+        for at, tips in self._past:
+            if at < since:
+                continue
+            away = np.linalg.norm(tips - (place if tip is None else tip), axis=1)
+            if away.min() > (size + REACH if tip is None else MAX_STEP):
+                return None
+            tip = tips[away.argmin()]
+            start = tip if start is None else start
+        return None if start is None or tip is None else tip - start
+
     def were_near(self, place: NDArray[np.float64], size: float, since: float) -> bool:
         """Return True if a hand has been so near that it may have set a thing down.
 

@@ -125,6 +125,8 @@ class Pipeline:
     beneath: Beneath | None = field(default=None, init=False)
     settled_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it last came to rest."""
+    there_at: float = field(default=-np.inf, init=False)
+    """Time in seconds of the last frame that showed a part of it where it rests."""
     completed: bool = field(default=False, init=False)
     """True if it was completed during its present rest, from the present side of the table."""
     completed_at: float = field(default=-np.inf, init=False)
@@ -459,6 +461,7 @@ class Pipeline:
         or from the border of the image, that hides an edge; and a mug turns away from its handle while the hand hides
         it. At rest, only the points that nothing hides count, all that shows the thing must be within its box, its
         handle is where it is seen, and it lies as it did first. It moves along the table and turns about the vertical.
+        A rectangular thing agrees almost as well after a turn by a right angle: this is tried if points lie outside.
 
         Parameters
         ----------
@@ -474,7 +477,11 @@ class Pipeline:
         sight = Sight(self._points, self._colours, image, view, taken, noise)
         self._lay_flat(sight, own)
         if sight.agreement(self.pose[:3, 3], quaternion(self.pose)).exposed >= MIN_ALIGNED:
-            pose, gain = sight.shifted(self.pose, self.oriented, self._few(own))
+            few = self._few(own)
+            pose, gain = sight.shifted(self.pose, self.oriented, few)
+            if (~self.contains(few, 0.0, pose)).sum() >= MIN_POINTS_BEYOND:
+                turned, more = sight.shifted(self.pose, self.oriented, few, np.pi / 2)
+                pose, gain = (turned, more) if more > gain + MIN_BETTER else (pose, gain)
             if gain > MIN_BETTER:
                 self.pose = pose
         self._turn_to_handle(image, view, taken, own, noise)
@@ -807,7 +814,7 @@ class Pipeline:
             Share of its visible pixels that agree with the reference.
         """
         self.state, self.seen_at, self.found, self.agreement = "seen", at, True, agreement
-        self._carried = []
+        self.there_at, self._carried = at, []
 
     def is_still(self, at: float) -> bool:
         """Return True if the thing has not moved for a while.

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.scene import OrientedBox
+from deixis.perception.scene import OrientedBox, turned_axes
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.things.likeness import COLOUR_SPREAD, SHADE_SPREAD
 from deixis.perception.tracking.things.particles import turned_by
@@ -119,7 +119,7 @@ class Sight:
         return Agreement(inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * every), exposed / every)
 
     def shifted(
-        self, start: NDArray[np.float64], box: OrientedBox, own: NDArray[np.float64]
+        self, start: NDArray[np.float64], box: OrientedBox, own: NDArray[np.float64], turn: float = 0.0
     ) -> tuple[NDArray[np.float64], float]:
         """Return the best pose that is shifted along the table and turned about the vertical from another.
 
@@ -133,11 +133,13 @@ class Sight:
             Box of the thing in its own frame.
         own
             Points (k, 3) that show the thing, in the table's frame.
+        turn
+            Angle in radians about the vertical axis of the box by which the pose is turned before the search.
 
         Returns
         -------
         tuple
-            Pose (4, 4), and the gain of its score.
+            Pose (4, 4), and the gain of its score over that of ``start``.
         """
         from deixis.perception.tracking.kernels import covered
 
@@ -150,8 +152,11 @@ class Sight:
             found += covered(places, turns, own, centre, box.yaw, half)
             return found
 
+        first = float(weigh(start[None, :3, 3], quaternion(start)[None])[0])
+        if turn:
+            start = _turned(start, centre, turn)
         moved, turned = np.zeros((1, 3)), quaternion(start)[None]
-        best = first = float(weigh(start[None, :3, 3], turned)[0])
+        best = float(weigh(start[None, :3, 3], turned)[0]) if turn else first
         step, directions = np.array(ALIGN_STEP), np.array(list(itertools.product((-1, 0, 1), repeat=3)))
         while step[0] >= ALIGN_END:
             tried = moved + step * directions
@@ -167,6 +172,14 @@ class Sight:
         pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ pose[:3, :3]
         pose[:2, 3] += x, y
         return pose, best - first
+
+
+def _turned(pose: NDArray[np.float64], middle: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+    """Return a pose turned about the vertical through a place in the frame of the thing."""
+    turned = pose.copy()
+    turned[:3, :3] = turned_axes(angle).T @ pose[:3, :3]
+    turned[:3, 3] = pose[:3, :3] @ middle + pose[:3, 3] - turned[:3, :3] @ middle
+    return turned
 
 
 def quaternion(pose: NDArray[np.float64]) -> NDArray[np.float64]:
