@@ -1,4 +1,4 @@
-"""``deixis query`` with an empty answer: a sentence says so on standard error, and the output stays machine-readable."""
+"""``deixis query`` with an empty answer: standard error says so, and the output stays machine-readable."""
 
 from __future__ import annotations
 
