@@ -31,6 +31,9 @@ _FORMULA = re.compile(r"[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?INF")
 
 
+EMPTY_ANSWER = "the query has no answer: nothing in the memory matches it"
+"""Sentence about an answer without rows and triples."""
+
 MAX_PADDED = 80
 """Maximum width of a column of plain text to which shorter cells are padded."""
 
@@ -126,6 +129,8 @@ class QueryResult(Answer):
     (1, ['cutlery'])
     >>> found.to_table()
     ['what        kind', '----------  -------', '<urn:fork>  cutlery']
+    >>> QueryResult(QueryKind.SELECT, ("what",)).remarks()
+    ('the query has no answer: nothing in the memory matches it',)
     >>> found.to_csv().split()
     ['what,kind', 'urn:fork,cutlery']
     >>> found.to_json() == "".join(found.json_parts())
@@ -165,6 +170,16 @@ class QueryResult(Answer):
     def empty(self) -> bool:
         """True for a query of rows or triples that found none."""
         return self.kind is not QueryKind.ASK and not self.rows and not self.triples
+
+    def remarks(self) -> tuple[str, ...]:
+        """Return the sentence about an empty answer, if it is empty, and the notes on what the answer may lack.
+
+        Returns
+        -------
+        tuple of str
+            Sentences that people read beside the rows; files of rows do not have them.
+        """
+        return (EMPTY_ANSWER, *self.notes) if self.empty else self.notes
 
     @classmethod
     def of(cls, kind: QueryKind, answer: StoreAnswer, ordered: bool, limits: QueryLimits) -> QueryResult:

@@ -98,12 +98,27 @@ class FullSummaries(TyperGroup):
             formatter.write_dl(rows)
 
 
+COMPLETED_SHELLS = ("bash", "zsh", "fish")
+"""Shells with completion."""
+
+
 class CommandsOnDemand(TyperGroup):
     """The commands of COMMANDS, each imported only when it is called, so that small commands start fast."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
         self.commands = dict.fromkeys(COMMANDS, self)  # the names, so that a misspelt one gets a suggestion
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the command line; ``--show-completion`` and ``--install-completion`` may have the name of a shell."""
+        if len(args) == 2:
+            for parameter in self.get_params(ctx):
+                if parameter.name in ("show_completion", "install_completion") and args[0] in parameter.opts:
+                    if args[1] not in COMPLETED_SHELLS:
+                        allowed = ", ".join(COMPLETED_SHELLS[:-1]) + f" or {COMPLETED_SHELLS[-1]}"
+                        raise typer.BadParameter(f"the shell must be {allowed}, got {args[1]}", ctx, parameter)
+                    parameter.callback(ctx, parameter, args[1])  # ends the program
+        return super().parse_args(ctx, args)  # type: ignore[no-any-return]
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of the commands, in the order of ``--help``."""

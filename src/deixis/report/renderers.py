@@ -399,10 +399,10 @@ def to_html(answer: Answer) -> str:
         HTML fragment with escaped text and at most :data:`MAX_HTML_ROWS` rows.
     """
     head = f"<p><b>{type(answer).__name__}</b> {html.escape(answer.summary())}</p>"
-    if _renderer(answer).rows is None:
+    rows = [] if _renderer(answer).rows is None else to_rows(answer)
+    if not rows:
         return f"{head}<pre>{html.escape(answer.to_text())}</pre>"
-    rows = to_rows(answer)
-    return head + (html_table(rows[:MAX_HTML_ROWS], len(rows)) if rows else "")
+    return head + html_table(rows[:MAX_HTML_ROWS], len(rows))
 
 
 MAX_HTML_ROWS = 100

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -139,8 +140,39 @@ def test_the_script_for_each_shell(shell: str, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("shellingham.detect_shell", lambda: (shell, f"/bin/{shell}"))
     code, out, _ = deixis("--show-completion")
     assert code == 0 and f"_DEIXIS_COMPLETE=complete_{shell}" in out
+    assert deixis("--show-completion", shell) == (0, out, "")
     if shutil.which(shell):
         subprocess.run([shell, "-n"], input=out, text=True, check=True, capture_output=True)
+
+
+def test_the_script_of_another_shell_than_the_running_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shellingham.detect_shell", lambda: ("bash", "/bin/bash"))
+    out = deixis("--show-completion", "zsh")[1]
+    assert out.startswith("#compdef deixis\n") and out.endswith("compdef _deixis_completion deixis\n")
+    assert deixis("--show-completion", "fish")[1].startswith("complete --command deixis ")
+
+
+@pytest.mark.parametrize("option", ["--show-completion", "--install-completion"])
+def test_an_unknown_shell_is_named_in_the_error(option: str) -> None:
+    code, out, err = deixis(option, "csh")
+    assert (code, out) == (2, "") and f"'{option}': the shell must be bash, zsh or fish, got csh" in err
+
+
+@pytest.mark.skipif(shutil.which("fish") is None, reason="needs fish")
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("deixis ground --engine s", "scalable\nsimilarity\n"),
+        ("deixis solve n.csp --calculus rc", "rcc5\nrcc8\n"),
+    ],
+)
+def test_fish_completes_with_the_printed_script(words: str, expected: str, tmp_path: Path) -> None:
+    script = f"{deixis('--show-completion', 'fish')[1]}\ncomplete -C '{words}'"
+    env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    ran = subprocess.run(
+        ["fish", "--no-config", "-c", script], capture_output=True, text=True, env=env, cwd=tmp_path, check=False
+    )
+    assert (ran.stdout, ran.stderr) == (expected, "")
 
 
 def test_installing_writes_into_the_home_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

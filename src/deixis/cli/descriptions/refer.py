@@ -47,12 +47,12 @@ def refer(
     batch: Annotated[
         str | None,
         typer.Option(
-            metavar="FILE", help='Answer lines {"text", "scene"} (- for standard input), a line of JSON each.'
+            metavar="FILE", help='Answer each line {"text", "scene"} of a file (-: standard input) with a line.'
         ),
     ] = None,
     ask: Annotated[bool, typer.Option("--ask", help="Ask yes-or-no questions until the object is decided.")] = False,
     oracle: Annotated[
-        str | None, typer.Option(metavar="ID", help="Answer the questions for the object with this id.")
+        str | None, typer.Option(metavar="ID", help="Answer the questions as if this object were meant.")
     ] = None,
     until: Annotated[
         float, typer.Option(metavar="P", help="--ask and --oracle stop at this probability, at most 0.95.")

@@ -63,9 +63,7 @@ def query(
             sys.stdout.write(result.to_turtle())
         else:
             print_lines(result.to_table())
-            if result.empty:
-                print_note("the query has no answer: nothing in the memory matches it")
-            for note in result.notes:
-                print_note(note)
+        for remark in result.remarks():
+            print_note(remark)
         if result.boolean is False:
             raise typer.Exit(NO)

@@ -33,7 +33,7 @@ def show(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Print a learned layout, with what its tables have in common and counts.
+    """Print a learned layout: what its tables have in common, and on how many of them.
 
     A name stands for all tables of the layout: stated facts that did not hold on all of them are hedged by their share,
     and what held on all of them is added. The id of a lesson stands for that lesson.

@@ -29,7 +29,7 @@ def infer(
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Print what a script states and implies, or the smallest contradiction in it (exit 1)."""
+    """Print what a script states and implies, or a minimal contradiction in it (exit 1)."""
     from deixis.errors import DeixisError
     from deixis.report.layouts.script import inference_lines
     from deixis.workflows.layouts.infer import infer as run

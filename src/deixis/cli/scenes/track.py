@@ -44,7 +44,7 @@ def track(
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Simulator: seed of things, actions and noise.")] = 0,
     camera: Annotated[str, typer.Option(metavar="PATH", help="Simulator: still, sway or walk.")] = "still",
     record: Annotated[
-        Path | None, typer.Option(metavar="FOLDER", help="Write the frames as a recorded sequence, too.")
+        Path | None, typer.Option(metavar="FOLDER", help="Also write the frames as a recorded sequence.")
     ] = None,
     lines: Annotated[bool, typer.Option("--lines", help="Print a line of JSON after each frame.")] = False,
     as_json: AsJson = False,

@@ -276,7 +276,7 @@ def query_to_dict(found: QueryResult) -> dict[str, Any]:
 
 
 def query_lines(found: QueryResult) -> list[str]:
-    """Return the aligned lines that ``deixis query`` prints.
+    """Return the aligned lines that ``deixis query`` prints, and its remarks.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def query_lines(found: QueryResult) -> list[str]:
     list of str
         Lines without their ends.
     """
-    return found.to_table()
+    return [*found.to_table(), *found.remarks()]
 
 
 def _value(term: Any) -> Any:

@@ -10,6 +10,7 @@ import pytest
 import deixis
 from deixis.examples_data import example
 from deixis.memory.errors import QueryError
+from deixis.memory.semantic.queries.results import EMPTY_ANSWER
 from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.memory.semantic.store import SemanticMemory
 
@@ -59,5 +60,8 @@ def test_a_term_that_the_memory_uses_is_accepted(memory: SemanticMemory) -> None
 
 
 def test_an_empty_answer_says_so(taught: deixis.Session) -> None:
-    assert taught.query("SELECT * { ?x a dx:Layout . FILTER(?x = lx:nothing) }").empty
+    for query in ("SELECT *", "CONSTRUCT { ?x a dx:Fork }"):
+        answer = taught.query(f"{query} {{ ?x a dx:Layout . FILTER(?x = lx:nothing) }}")
+        assert answer.empty and EMPTY_ANSWER in answer.to_text()
+        assert EMPTY_ANSWER in answer._repr_html_()
     assert not taught.query("ASK { ?x a dx:Layout . FILTER(?x = lx:nothing) }").empty
