@@ -216,13 +216,10 @@ class SceneRelations:
         PaperGraph
             The graph, with the word of every ordered pair as its edge label.
         """
-        labels = tuple(relation.word for relation in self.vocabulary.of_reading(Reading.EXACT))
-        words = (self.vocabulary.paper_word(relation) for relation in self.vocabulary.values())
-        label_of = np.array([-1 if word is None else labels.index(word) for word in words], dtype=np.int8)
+        labels, label_of = self.vocabulary.paper_labels
         subjects, objects = np.nonzero(self.names >= 0)
         return PaperGraph(
             vertices=self.nodes,
-            vertex_labels=self.nodes,
             edges=np.stack([subjects, objects], axis=1).astype(np.int32),
             edge_labels=label_of[self.names[subjects, objects]],
             labels=labels,
