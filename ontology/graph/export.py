@@ -207,22 +207,20 @@ def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequen
     return "".join(chunks)
 
 
-def node_iris(graph: RelationGraph, base: str = GRAPH_BASE) -> list[str]:
+def node_iris(graph: RelationGraph) -> list[str]:
     """Return the IRIs of the nodes in angle brackets, as :func:`graph_to_turtle` writes them.
 
     Parameters
     ----------
     graph
         The graph.
-    base
-        Prefix of the IRIs.
 
     Returns
     -------
     list of str
         One IRI for each node.
     """
-    return [_iri(base, name) for name in graph.nodes]
+    return [_iri(GRAPH_BASE, name) for name in graph.nodes]
 
 
 def _dx(term: DX) -> str:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from deixis.answers import count
 from deixis.errors import GraphError
 from deixis.ontology.graph.facts import OPTIONAL_WEIGHT, Fact, Source, dispensable
-from deixis.ontology.relations.relation import Reading, Relations
+from deixis.ontology.relations.relation import Relations
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -310,9 +310,7 @@ class RelationGraph:
         PaperGraph
             The labelled graph.
         """
-        labels = tuple(r.word for r in self.vocabulary.of_reading(Reading.EXACT))
-        words = (self.vocabulary.paper_word(r) for r in self.vocabulary.values())
-        label_of = np.array([-1 if word is None else labels.index(word) for word in words], dtype=np.int8)
+        labels, label_of = self.vocabulary.paper_labels
         telling = np.array([len(r.broader) for r in self.vocabulary.values()])
         plain = np.flatnonzero(self.positive & self.affirmed & (np.bitwise_count(self.relation_sets) == 1))
         plain = plain[label_of[np.round(np.log2(self.relation_sets[plain])).astype(np.int64)] >= 0]
@@ -323,7 +321,6 @@ class RelationGraph:
         kept = np.sort(first)
         return PaperGraph(
             vertices=self.nodes,
-            vertex_labels=self.nodes,
             edges=np.stack([self.subjects[plain[kept]], self.objects[plain[kept]]], axis=1),
             edge_labels=label_of[relation[kept]],
             labels=labels,
@@ -332,10 +329,12 @@ class RelationGraph:
 
 @dataclass(frozen=True, eq=False)
 class PaperGraph:
-    """Definition 1: G = (V, E, lambda, alpha, L_V, L_E), a directed graph with labelled vertices and edges."""
+    """Definition 1: G = (V, E, lambda, alpha, L_V, L_E), a directed graph with labelled vertices and edges.
 
-    vertices: tuple[str, ...]  # V
-    vertex_labels: tuple[str, ...]  # lambda, in the order of V; L_V is the set of them
+    The label lambda of a vertex is its name.
+    """
+
+    vertices: tuple[str, ...]  # V, and L_V
     edges: NDArray[np.int32]  # E, shape (m, 2): from, to
     edge_labels: NDArray[np.int8]  # alpha, shape (m,): positions in ``labels``
     labels: tuple[str, ...]  # L_E
@@ -363,7 +362,7 @@ class PaperGraph:
 
         Examples
         --------
-        >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
+        >>> graph = PaperGraph(("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
         >>> graph.histograms().tolist()
         [[[0], [1]], [[1], [0]]]
         """

@@ -11,8 +11,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    pass
 
 
 class Allen(IntEnum):
@@ -96,21 +95,3 @@ def members(mask: int) -> tuple[Allen, ...]:
     ['<', 'm']
     """
     return tuple(relation for relation in Allen if mask >> relation & 1)
-
-
-def mask_array(mask: int) -> NDArray[np.bool_]:
-    """Return a 13-bit mask as a boolean array of shape (13,).
-
-    Parameters
-    ----------
-    mask
-        The mask.
-
-    Returns
-    -------
-    ndarray
-        True for the relations in the set, shape (13,).
-    """
-    import numpy as np
-
-    return np.array([bool(mask >> code & 1) for code in range(13)])

@@ -209,6 +209,15 @@ class Relations(Mapping[str, Relation]):
         wide = [name for name in sorted(relation.broader) if self._by_name[name].reading is Reading.WIDE]
         return wide[0] if wide else None
 
+    @cached_property
+    def paper_labels(self) -> tuple[tuple[str, ...], NDArray[np.int8]]:
+        """The ten words, and the position of each relation's word among them; -1 for relations without one."""
+        import numpy as np
+
+        labels = tuple(relation.word for relation in self.of_reading(Reading.EXACT))
+        words = (self.paper_word(relation) for relation in self.values())
+        return labels, np.array([-1 if word is None else labels.index(word) for word in words], dtype=np.int8)
+
     def exact(self, wide: Relation) -> Relation:
         """Return the exact relation of the same word.
 

@@ -65,15 +65,13 @@ def finite_points(cloud: PointCloud) -> NDArray[np.float64]:
     return cloud.points[cloud.finite].astype(np.float64)
 
 
-def require_points(points: NDArray[np.floating], name: str = "points") -> None:
+def require_points(points: NDArray[np.floating]) -> None:
     """Raise CloudError unless the points have shape (n, 3).
 
     Parameters
     ----------
     points
         Array to check.
-    name
-        Name of the argument in the message.
 
     Raises
     ------
@@ -81,7 +79,7 @@ def require_points(points: NDArray[np.floating], name: str = "points") -> None:
         If they have another shape.
     """
     if points.ndim != 2 or points.shape[1] != 3:
-        raise CloudError(f"{name} must have shape (n, 3), got {points.shape}")
+        raise CloudError(f"`points` must have shape (n, 3), got {points.shape}")
 
 
 def require_length(value: float, name: str) -> None:

@@ -7,7 +7,6 @@ schema of a line.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -149,35 +148,3 @@ def _skeleton(data: Any, where: str) -> tuple[Skeleton, bool]:
         else:
             seen[name] = (x, y, z)
     return Skeleton(float(at), seen, person), complete
-
-
-def write_skeletons(skeletons: Iterable[Skeleton], path: str | Path) -> None:
-    """Write skeletons as lines of JSON, with millimetres and milliseconds.
-
-    Parameters
-    ----------
-    skeletons
-        The skeletons.
-    path
-        File to write.
-
-    Raises
-    ------
-    PointingError
-        If the file cannot be written.
-    """
-    lines = (
-        json.dumps(
-            {
-                "at": round(one.at, 3),
-                "person": one.person,
-                "joints": {name: [round(value, 3) for value in place] for name, place in one.joints.items()},
-            },
-            ensure_ascii=False,
-        )
-        for one in skeletons
-    )
-    try:
-        Path(path).write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
-    except OSError as error:
-        raise PointingError(f"{path}: cannot be written: {error.strerror}") from error

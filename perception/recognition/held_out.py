@@ -76,11 +76,11 @@ def hold_out(
     categories: Sequence[InstanceCategory],
     indexes: Sequence[ViewIndex | None],
     settings: RecognitionSettings,
-    most: int = MAX_HELD_OUT,
     progress: Progress | None = None,
 ) -> HeldOut:
     """Compute the normalised distances (ND) of held-out views; all views of a thing are held out together.
 
+    At most ``MAX_HELD_OUT`` views, chosen evenly, are held out.
     The result is therefore about things that were never seen before, if it is known which thing each view shows.
 
     Parameters
@@ -92,8 +92,6 @@ def hold_out(
     settings
         Settings of recognition. If there are more views than are searched exactly, the search is approximate, as in
         recognition.
-    most
-        Maximum number of views that are held out, chosen evenly.
     progress
         Callback with the number of views done, and the number of all views.
 
@@ -102,7 +100,7 @@ def hold_out(
     HeldOut
         ND of the held-out views to all categories, in their order.
     """
-    share = -(-most // max(1, len(categories)))
+    share = -(-MAX_HELD_OUT // max(1, len(categories)))
     chosen = [(number, place) for number, each in enumerate(categories) for place in _evenly(len(each), share)]
     widths = [category.width(settings.over_things) for category in categories]
     effort = settings.effort_among(sum(map(len, categories)))

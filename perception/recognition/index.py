@@ -334,15 +334,13 @@ class ViewIndex:
         return Nearest(float(distance), int(place), int(seen))
 
 
-def indexes_of(packs: Sequence[PackedViews], reduction: Reduction | None = None) -> list[ViewIndex | None]:
-    """Return an index for each pack of views.
+def indexes_of(packs: Sequence[PackedViews]) -> list[ViewIndex | None]:
+    """Return an index for each pack of views; all share the reduction that is computed from them.
 
     Parameters
     ----------
     packs
         Views of each category.
-    reduction
-        Reduction that all indexes share; by default one is computed from all packs.
 
     Returns
     -------
@@ -352,5 +350,5 @@ def indexes_of(packs: Sequence[PackedViews], reduction: Reduction | None = None)
     full = [pack for pack in packs if len(pack)]
     if not full:
         return [None] * len(packs)
-    shared = reduction or Reduction.of(full)
+    shared = Reduction.of(full)
     return [ViewIndex.of(pack, shared) if len(pack) else None for pack in packs]

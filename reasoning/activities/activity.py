@@ -150,6 +150,12 @@ class StepSequence:
         """Relations of the masks as numbers 0 and 1, shape (n, n, 13)."""
         return members_of(self.masks)
 
+    @property
+    def shares(self) -> NDArray[np.float64]:
+        """Probability of each relation of each pair if all that are possible are as likely, shape (n, n, 13)."""
+        shares: NDArray[np.float64] = self.members / self.members.sum(axis=2, keepdims=True)
+        return shares
+
 
 def kind_of(name: str) -> str:
     """Return the kind in the name of a thing: without its number, and with underscores.
@@ -231,6 +237,21 @@ def members_of(masks: NDArray[np.uint16]) -> NDArray[np.float64]:
         1 where the relation is in the mask, else 0; one axis of length 13 more.
     """
     return ((masks[..., None] >> np.arange(RELATIONS)) & 1).astype(np.float64)
+
+
+def _pooled(
+    parts: Iterable[tuple[Sequence[Step], NDArray[np.float64], NDArray[np.float64]]],
+) -> tuple[tuple[Step, ...], NDArray[np.uint16], NDArray[np.float64], NDArray[np.float64]]:
+    """Return all steps of some parts, unrestricted relations, and the sums of presences (n,) and counts (n, n, 13)."""
+    parts = list(parts)
+    steps = tuple(sorted({step for names, _, _ in parts for step in names}))
+    place, n = {step: number for number, step in enumerate(steps)}, len(steps)
+    present, counts = np.zeros(n), np.zeros((n, n, RELATIONS))
+    for names, presences, relations in parts:
+        at = np.array([place[step] for step in names], dtype=np.int64)
+        present[at] += presences
+        counts[np.ix_(at, at)] += relations
+    return steps, np.full((n, n), ALL_ALLEN, dtype=np.uint16), present, counts
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,30 +343,14 @@ class Activity:
         examples = list(examples)
         if not any(example.steps for example in examples):
             raise SettingError("an activity is learned from one or more sequences with at least one fluent")
-        steps = tuple(sorted({step for example in examples for step in example.steps}))
-        place, n = {step: number for number, step in enumerate(steps)}, len(steps)
-        present, counts = np.zeros(n), np.zeros((n, n, RELATIONS))
-        for example in examples:
-            at = np.array([place[step] for step in example.steps], dtype=np.int64)
-            present[at] += 1
-            share = example.members / example.members.sum(axis=2, keepdims=True) if len(at) else example.members
-            counts[np.ix_(at, at)] += share
-        stated = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
         layings = tuple(example.laying for example in examples if example.steps)
-        return cls(name, steps, stated, present, counts, len(examples), layings)
+        pooled = _pooled((example.steps, np.ones(len(example.steps)), example.shares) for example in examples)
+        return cls(name, *pooled, len(examples), layings)
 
     def __add__(self, other: Activity) -> Activity:
         """Return the activity of the examples of two learned activities."""
-        steps = tuple(sorted({*self.steps, *other.steps}))
-        place, n = {step: number for number, step in enumerate(steps)}, len(steps)
-        present, counts = np.zeros(n), np.zeros((n, n, RELATIONS))
-        for each in (self, other):
-            at = np.array([place[step] for step in each.steps], dtype=np.int64)
-            present[at] += each.present
-            counts[np.ix_(at, at)] += each.counts
-        stated = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
-        layings = self.layings + other.layings
-        return Activity(self.name, steps, stated, present, counts, self.examples + other.examples, layings)
+        pooled = _pooled((each.steps, each.present, each.counts) for each in (self, other))
+        return Activity(self.name, *pooled, self.examples + other.examples, self.layings + other.layings)
 
     @property
     def presence(self) -> NDArray[np.float64]:

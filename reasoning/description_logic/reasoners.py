@@ -184,40 +184,6 @@ def classify(
     return Classification("".join(f"{line}\n" for line in lines), hierarchy.unsatisfiable)
 
 
-def is_consistent(
-    ntriples: str, reasoner: Reasoner | str = Reasoner.HERMIT, time_limit: float = DEFAULT_TIME_LIMIT
-) -> bool:
-    """Return whether an ontology is consistent.
-
-    Parameters
-    ----------
-    ntriples
-        The ontology as N-Triples. ``owl:imports`` is not followed.
-    reasoner
-        The reasoner, or its name.
-    time_limit
-        Time limit in seconds.
-
-    Returns
-    -------
-    bool
-        True if the ontology has a model.
-
-    Raises
-    ------
-    LimitError
-        The time limit passed.
-    ReasonerError
-        The reasoner cannot be run, or cannot read the ontology.
-    SettingError
-        There is no reasoner of this name.
-    TriplesError
-        The text is not N-Triples.
-    """
-    reasoner = reasoner_named(reasoner)
-    return not _run(reasoner, _CONSISTENT[reasoner], [_ontology(read_ntriples(ntriples))], time_limit).inconsistent
-
-
 def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float = DEFAULT_TIME_LIMIT) -> int | None:
     """Return the position of the first inconsistent one of several ontologies, or None, by one process of HermiT.
 
@@ -301,7 +267,6 @@ def reasoner_named(name: Reasoner | str) -> Reasoner:
 
 _MAIN = {Reasoner.HERMIT: "org.semanticweb.HermiT.cli.CommandLine", Reasoner.PELLET: "pellet.Pellet"}
 _CLASSIFY: dict[Reasoner, tuple[str, ...]] = {Reasoner.HERMIT: ("-c", "-O", "-I"), Reasoner.PELLET: ("realize",)}
-_CONSISTENT: dict[Reasoner, tuple[str, ...]] = {Reasoner.HERMIT: ("-k",), Reasoner.PELLET: ("consistency",)}
 _PROPERTY_VALUES: dict[Reasoner, tuple[str, ...]] = {
     Reasoner.HERMIT: ("-Y",), Reasoner.PELLET: ("--infer-prop-values",)
 }  # fmt: skip

@@ -125,38 +125,6 @@ class SceneRelations:
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     poses: Poses | None = None  # of the n objects; None: axes along the sides of the boxes, no fronts
 
-    @classmethod
-    def from_graph(cls, graph: RelationGraph) -> SceneRelations:
-        """Read the relations of a complete relation graph.
-
-        Parameters
-        ----------
-        graph
-            The graph.
-
-        Returns
-        -------
-        SceneRelations
-            The relations as matrices.
-
-        Raises
-        ------
-        GraphError
-            If an ordered pair has no exact relation, or more than one.
-        """
-        n = len(graph.nodes)
-        exact = sum(relation.bit for relation in graph.vocabulary.of_reading(Reading.EXACT))
-        sets = graph.relation_sets
-        single = (np.bitwise_count(sets) == 1) & ((sets & ~np.int64(exact)) == 0) & graph.positive
-        names = np.full((n, n), -1, dtype=np.int8)
-        names[graph.subjects[single], graph.objects[single]] = np.round(np.log2(sets[single])).astype(np.int8)
-        missing = (names < 0) & ~np.eye(n, dtype=bool)
-        if missing.any() or len(graph) != n * (n - 1):
-            where = np.argwhere(missing)
-            pair = f" ({graph.nodes[where[0][0]]}, {graph.nodes[where[0][1]]})" if len(where) else ""
-            raise GraphError(f"a scene's graph needs one exact relation for every ordered pair{pair}")
-        return cls(graph.vocabulary, graph.nodes, names, graph.boxes, graph.kinds)
-
     def index(self, node: str) -> int:
         """Return the position of an object.
 
@@ -248,13 +216,10 @@ class SceneRelations:
         PaperGraph
             The graph, with the word of every ordered pair as its edge label.
         """
-        labels = tuple(relation.word for relation in self.vocabulary.of_reading(Reading.EXACT))
-        words = (self.vocabulary.paper_word(relation) for relation in self.vocabulary.values())
-        label_of = np.array([-1 if word is None else labels.index(word) for word in words], dtype=np.int8)
+        labels, label_of = self.vocabulary.paper_labels
         subjects, objects = np.nonzero(self.names >= 0)
         return PaperGraph(
             vertices=self.nodes,
-            vertex_labels=self.nodes,
             edges=np.stack([subjects, objects], axis=1).astype(np.int32),
             edge_labels=label_of[self.names[subjects, objects]],
             labels=labels,

@@ -72,7 +72,7 @@ def unlinking(lesson: str) -> Change:
     return Change(operations=(ledger.drop(views_graph(lesson)),))
 
 
-def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: frozenset[str] = frozenset()) -> Change:
+def relinking(store: ox.Store, categories: Mapping[str, str | None]) -> Change:
     """Return the change that gives linked views other categories.
 
     Parameters
@@ -81,8 +81,6 @@ def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: fr
         Store before the change.
     categories
         New categories by the ids of the views; None removes the links of a view. Views without links are ignored.
-    besides
-        Lessons whose links stay as they are.
 
     Returns
     -------
@@ -93,7 +91,7 @@ def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: fr
     for view, category in categories.items():
         for quad in store.quads_for_pattern(view_node(view), CATEGORY_OF_VIEW, None, None):
             lesson = lesson_of_views(quad.graph_name)
-            if lesson is None or lesson in besides or getattr(quad.object, "value", None) == category:
+            if lesson is None or getattr(quad.object, "value", None) == category:
                 continue
             operations += ledger.deletion(views_graph(lesson), [quad.triple])
             if category is not None:

@@ -25,7 +25,6 @@ _Bytes = NDArray[np.uint8]
 MIN_POWER, MAX_POWER = -100, 60
 """Range of powers of ten in which the kernel converts decimals; the caller converts the others."""
 
-_EXACT = 2**53
 _TENS = 10.0 ** np.arange(23)
 _32, _LOW, _ONE = np.uint64(32), np.uint64(2**32 - 1), np.uint64(1)
 _TO_55_BITS, _BEYOND_55 = np.uint64(9), np.uint64(2**9 - 1)

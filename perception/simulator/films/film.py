@@ -84,13 +84,10 @@ class FilmedFrame(Frame):
         State of each thing that is on the table or in the hand.
     camera
         The camera with its pose in the table's frame.
-    hand_points
-        Number of points that show the hand.
     """
 
     things: tuple[ThingTruth, ...] = ()
     camera: Camera = field(default_factory=lambda: Camera(np.eye(4)))
-    hand_points: int = 0
 
     def scene(self) -> Scene:
         """Return the true scene: the things with their boxes, in the table's frame.
@@ -351,7 +348,7 @@ class Film:
             if thing.name in poses
             for pose, held in [poses[thing.name]]
         )
-        return FilmedFrame(cloud, at, number, None, truth, camera, int(counts[self.hand_label + 1]))
+        return FilmedFrame(cloud, at, number, None, truth, camera)
 
 
 class _RestingHits:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -30,6 +30,12 @@ ROOM = 0.22
 GAP = 0.02
 """Minimum distance in metres between the boxes of a thing that is set down and of the others."""
 
+PAUSE = 0.6
+"""Seconds between two actions."""
+
+MAX_THINGS = 12
+"""Largest number of things that are on the table at a time for another one to be brought."""
+
 ACTIONS = {"move": 0.35, "touch": 0.1, "stack": 0.1, "take": 0.12, "bring": 0.13, "pass": 0.2}
 """Shares of the actions: to a free place, beside another thing without a gap, onto another thing, and others."""
 
@@ -39,13 +45,8 @@ def random_film(
     actions: int,
     seed: int,
     *,
-    pause: float = 0.6,
-    most: int = 12,
-    shares: dict[str, float] | None = None,
-    kinds: Sequence[str] = KINDS,
     path: CameraPath | None = None,
     sure_pass: bool = False,
-    ontology: Ontology | None = None,
 ) -> Film:
     """Return a film of a random table on which a hand carries out random actions.
 
@@ -57,20 +58,10 @@ def random_film(
         Number of actions. One for which there is no room is replaced by a hand that passes over a thing.
     seed
         Seed of things, places and actions.
-    pause
-        Seconds between two actions.
-    most
-        Largest number of things that are on the table at a time.
-    shares
-        Probabilities of the actions, by their names in ``ACTIONS``, which is the default.
-    kinds
-        Words for the kinds of things.
     path
         Movement of the camera, or None for a camera that stands still.
     sure_pass
         True for a forearm that hides a thing for two seconds first, in addition to the actions.
-    ontology
-        Kinds and their sizes; by default :func:`~deixis.ontology.tbox.default_ontology`.
 
     Returns
     -------
@@ -80,7 +71,7 @@ def random_film(
     Raises
     ------
     SimulationError
-        If ``things`` is not from 1 to 300, or a kind is not known.
+        If ``things`` is not from 1 to 300.
 
     Examples
     --------
@@ -88,42 +79,34 @@ def random_film(
     >>> len(story.poses(0.0)), len(story.legs) > 4
     (3, True)
     """
-    ontology, rng = ontology or default_ontology(), np.random.default_rng([seed, 7])
-    table = lay(scattered(things, seed, kinds, ontology=ontology), ontology=ontology)
+    ontology, rng = default_ontology(), np.random.default_rng([seed, 7])
+    table = lay(scattered(things, seed, ontology=ontology), ontology=ontology)
     top = top_under(table.things, ROOM)
     stage = Stage(table.things, seed, ontology)
-    chances = shares or ACTIONS
-    names, weights = list(chances), np.array(list(chances.values()), dtype=np.float64)
-    stage.carry_out(Rest(pause))
+    names, weights = list(ACTIONS), np.array(list(ACTIONS.values()), dtype=np.float64)
+    stage.carry_out(Rest(PAUSE))
     if sure_pass:
         stage.carry_out(_pass_over(stage, top, rng))
-        stage.carry_out(Rest(pause))
+        stage.carry_out(Rest(PAUSE))
     for number in range(actions):
         kind = str(rng.choice(names, p=weights / weights.sum()))
-        action: Action | None = _action(kind, stage, top, rng, number, most, kinds, ontology)
+        action: Action | None = _action(kind, stage, top, rng, number, ontology)
         arm = float(rng.choice([0.0, 0.0, -1.2, 1.2]))
         if action is None:
             action, arm = _pass_over(stage, top, rng), 0.0
         stage.carry_out(action, arm)
-        stage.carry_out(Rest(pause))
+        stage.carry_out(Rest(PAUSE))
     return stage.film(top, path=path)
 
 
 def _action(
-    kind: str,
-    stage: Stage,
-    top: TableTop,
-    rng: np.random.Generator,
-    number: int,
-    most: int,
-    kinds: Sequence[str],
-    ontology: Ontology,
+    kind: str, stage: Stage, top: TableTop, rng: np.random.Generator, number: int, ontology: Ontology
 ) -> Move | TakeAway | Bring | None:
     """Return a random action of a kind, or None if there is no room for it."""
     if kind == "bring":
-        if len(stage.laid) >= most:
+        if len(stage.laid) >= MAX_THINGS:
             return None
-        word, instance = str(rng.choice(np.array(kinds))), int(rng.integers(2**31))
+        word, instance = str(rng.choice(np.array(KINDS))), int(rng.integers(2**31))
         yaw = float(rng.uniform(0, 2 * np.pi))
         reach = float(np.hypot(*drawn_plan(kind_named(word, ontology), instance, ontology))) / 2
         place = _free_place(stage, top, (np.full(2, -reach), np.full(2, reach)), rng)

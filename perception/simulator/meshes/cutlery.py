@@ -145,15 +145,15 @@ def fork(tines: int = 4) -> Builder:
     return build
 
 
-def knife(blade: float = 0.55, breadth: float = 1.0, grip: float = 0.75, pointed: bool = False) -> Builder:
+def knife(blade: float = 0.55, grip: float = 0.75, pointed: bool = False) -> Builder:
     """Return a builder of knives, which lie on their side, the edge to the left.
 
     Parameters
     ----------
     blade
         Length of the blade, as a share of the knife's length.
-    breadth, grip
-        Widths of the blade and of the handle, as shares of the knife's width. The larger one should be 1.
+    grip
+        Width of the handle, as a share of the width of the blade.
     pointed
         If True, the tip is a point instead of round.
 
@@ -165,7 +165,7 @@ def knife(blade: float = 0.55, breadth: float = 1.0, grip: float = 0.75, pointed
 
     def build(size: Size, rng: np.random.Generator) -> Mesh:
         t = _stations()
-        wide, hold = size.width / 2 * breadth, size.width / 2 * grip * rng.uniform(0.9, 1.0)
+        wide, hold = size.width / 2, size.width / 2 * grip * rng.uniform(0.9, 1.0)
         heel = 1 - blade * rng.uniform(0.95, 1.05)
         outline = {0.0: hold, heel / 2: 0.8 * hold, heel - 0.02: 0.65 * hold, heel + 0.04: wide, 0.88: 0.95 * wide}
         reach = np.clip((1 - t) / (0.22 if pointed else 0.1), 0.0, 1.0)

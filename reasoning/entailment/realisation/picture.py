@@ -34,6 +34,7 @@ from deixis.reasoning.entailment.realisation.verification import (
     partly_overlapping,
 )
 from deixis.reasoning.errors import LimitError
+from deixis.reasoning.geometry.overlap import overlapping
 
 ROUNDS = 25
 """Maximum number of rounds of moving overlapping objects apart."""
@@ -174,13 +175,8 @@ class _Task:
         for _ in range(ROUNDS):
             # move overlapping boxes apart, except stacked ones and those tried before
             known = {d.key for d in apart}
-            boxes = _boxes(edges)
-            low_corner, high_corner = boxes[:, 0], boxes[:, 1]
-            sharing = ((low_corner[:, None] < high_corner[None]) & (low_corner[None] < high_corner[:, None])).all(
-                axis=2
-            )
             new = []
-            for a, b in np.argwhere(np.triu(sharing, 1)).tolist():
+            for a, b in np.argwhere(np.triu(overlapping(_boxes(edges)), 1)).tolist():
                 nested = any(all(within(best.network, k, i, o) for k in (0, 1)) for i, o in ((a, b), (b, a)))
                 if not nested and (a, b) not in known:
                     noise = np.zeros(4) if self.rng is None else self.rng.uniform(0, 60, 4)

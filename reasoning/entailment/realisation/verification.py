@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.geometry.overlap import overlapping
 from deixis.reasoning.geometry.rectangle import box_relations
 
 
@@ -94,7 +95,6 @@ def partly_overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
         True for each such pair, shape (n, n).
     """
     low, high = boxes[:, 0], boxes[:, 1]
-    share = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2)
     inside = ((low[:, None] >= low[None]) & (high[:, None] <= high[None])).all(axis=2)
-    found: NDArray[np.bool_] = np.logical_and(share, ~(inside | inside.T))
+    found: NDArray[np.bool_] = np.logical_and(overlapping(boxes), ~(inside | inside.T))
     return found

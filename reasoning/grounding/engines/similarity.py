@@ -174,7 +174,7 @@ def node_similarity(
     Examples
     --------
     >>> import numpy as np
-    >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
+    >>> graph = PaperGraph(("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
     >>> node_similarity(graph, graph).matrices[0].round(3).tolist()
     [[0.707, 0.0], [0.0, 0.707]]
     """

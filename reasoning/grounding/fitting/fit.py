@@ -170,10 +170,8 @@ def learn_relations(
     scenes: Sequence[SaidPairs],
     prior: RelationModels,
     settings: FitSettings | None = None,
-    sources: Sequence[str] = (),
-    version: str = "",
 ) -> RelationModels:
-    """Return the models that best fit the scenes and the prior, with their provenance.
+    """Return the models that best fit the scenes and the prior.
 
     Models of words that no scene states are returned unchanged.
 
@@ -185,17 +183,13 @@ def learn_relations(
         Models from which the fit starts, and towards which the prior draws.
     settings
         Settings of the fit; by default, those of :class:`FitSettings`.
-    sources
-        Names of the data, for the provenance.
-    version
-        Version of the software, for the provenance.
 
     Returns
     -------
     RelationModels
         Fitted models; the words of a family share one.
     """
-    return fit_relations(scenes, prior, settings or FitSettings(), sources, version).models
+    return fit_relations(scenes, prior, settings or FitSettings()).models
 
 
 def fit_relations(

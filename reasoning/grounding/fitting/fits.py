@@ -30,7 +30,6 @@ def fit_powers(
     right: NDArray[np.bool_],
     photographs: Sequence[FitEvidence],
     own: NDArray[np.bool_],
-    another: float = ANOTHER_PRIOR,
 ) -> Array:
     """Fit the powers of facts, of chance, and of kinds, shape (3,), in the three steps of this module.
 
@@ -40,8 +39,6 @@ def fit_powers(
         Evidence of pairs of a description and a table, and whether they belong together.
     photographs, own
         Evidence of pairs of a description and a photograph, and whether they belong together.
-    another
-        Prior probability of another scene.
 
     Returns
     -------
@@ -61,7 +58,8 @@ def fit_powers(
     [0.59, 0.0]
     """
     facts = likeliest_powers(tables, right)[0]
-    margins = [(facts * one.facts - math.log(another / (1 - another))) / one.chance for one in tables if one.most > 0]
+    prior_odds = math.log(ANOTHER_PRIOR / (1 - ANOTHER_PRIOR))
+    margins = [(facts * one.facts - prior_odds) / one.chance for one in tables if one.most > 0]
     of_right = [fits for fits, one in zip(right, tables, strict=True) if one.most > 0]
     chance = max(0.0, float(np.quantile(np.array(margins)[of_right], ACCUSED)))
     kinds = likeliest_powers(photographs, own, held=(facts, chance))[2]

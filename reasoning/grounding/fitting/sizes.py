@@ -172,10 +172,8 @@ def size_of(n: int, median: Array, deviation: Array, prior: SizePrior, relative:
     return SizeModel(length, aspect if relative else (min(aspect[0], 0.0), aspect[1]), relative, float(n))
 
 
-def learn_sizes(
-    views: Mapping[str, Array], relative: bool = False, usual: Mapping[str, SizeModel] | None = None
-) -> dict[str, SizeModel]:
-    """Return the sizes of kinds from views of each, with usual sizes or the common prior.
+def learn_sizes(views: Mapping[str, Array], relative: bool = False) -> dict[str, SizeModel]:
+    """Return the sizes of kinds from views of each, with the common prior of all views.
 
     Parameters
     ----------
@@ -183,8 +181,6 @@ def learn_sizes(
         Views by kind (class IRI): log length and log aspect, shape (n, 2), with n >= 1.
     relative
         Whether the views are from images: upright, and relative to the scene.
-    usual
-        Usual sizes by kind, as priors; other kinds get the common prior of all views.
 
     Returns
     -------
@@ -194,5 +190,4 @@ def learn_sizes(
     if not views:
         return {}
     pooled = pooled_prior(list(views.values()))
-    priors = {kind: usual_prior(model) for kind, model in (usual or {}).items()}
-    return {kind: learn_size(seen, priors.get(kind, pooled), relative) for kind, seen in views.items()}
+    return {kind: learn_size(seen, pooled, relative) for kind, seen in views.items()}

@@ -118,9 +118,7 @@ class Description:
     rivals: tuple[int, ...] = field(default=())
 
 
-def single_out(
-    target: int, among: Collection[int], attributes: Attributes, landmarks: Collection[int], least: int = 0
-) -> Description:
+def single_out(target: int, among: Collection[int], attributes: Attributes, landmarks: Collection[int]) -> Description:
     """Describe an object so that the description fits no other one.
 
     Attributes are tried in a fixed order (noun, colour, size, relations to the landmarks, the nearest first), and each
@@ -136,8 +134,6 @@ def single_out(
         What can be said about the objects.
     landmarks
         Objects that relations may mention.
-    least
-        Minimum number of relations.
 
     Returns
     -------
@@ -161,9 +157,7 @@ def single_out(
             size, left = "largest", []
         elif attributes.sizes[target] * MIN_SIZE_RATIO <= others.min():
             size, left = "smallest", []
-    return relate(
-        Description(target, attributes.nouns[target], colour, size, (), tuple(left)), attributes, landmarks, least
-    )
+    return relate(Description(target, attributes.nouns[target], colour, size, (), tuple(left)), attributes, landmarks)
 
 
 def relate(

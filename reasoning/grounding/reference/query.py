@@ -83,16 +83,6 @@ class Description:
             for argument in relation.arguments:
                 yield from argument.parts()
 
-    def without_relations(self) -> Description:
-        """Return the noun and its properties alone.
-
-        Returns
-        -------
-        Description
-            Copy with no relations.
-        """
-        return replace(self, relations=())
-
 
 def readings(description: Description) -> Iterator[Description]:
     """Yield a description, and the one in which its last phrase belongs to the described object.

@@ -14,7 +14,7 @@ import numpy as np
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.qualitative.networks.closure.algebraic import close, closed_states
+from deixis.reasoning.qualitative.networks.closure.algebraic import close, traced_closure
 from deixis.reasoning.qualitative.networks.closure.state import NetworkState
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search.consistency import Verdict, decider, solve
@@ -128,7 +128,7 @@ def refuting(network: Network, deadline: Deadline) -> Core | None:
         return None
     small, _ = network.compact()
     try:
-        states, _ = closed_states(small, deadline, traced=True)
+        states, _ = traced_closure(small, deadline)
     except LimitError:  # the trail is too long to keep: no support is known, so suspect all constraints
         return network.constraints if close(small, deadline).emptied is not None else None
     for state in states:

@@ -14,7 +14,7 @@ import numpy as np
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
-from deixis.reasoning.qualitative.networks.closure.algebraic import close, closed_states, whole_relation
+from deixis.reasoning.qualitative.networks.closure.algebraic import close, traced_closure, whole_relation
 from deixis.reasoning.qualitative.networks.closure.rounds import PairRelation, Rounds, Step
 from deixis.reasoning.qualitative.networks.conflict import Core, refuting, resting
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
@@ -164,7 +164,7 @@ def _supporting(network: Network, first: int, second: int, goal: int, deadline: 
     if first not in things or second not in things:
         return None
     i, j = (int(np.searchsorted(things, thing)) for thing in (first, second))
-    states, complete = closed_states(small, deadline, traced=True)
+    states, complete = traced_closure(small, deadline)
     emptied = next((state for state in states if state.emptied is not None), None)
     if emptied is not None and emptied.emptied is not None:
         reached = set(emptied.emptied) == {i, j}

@@ -12,7 +12,7 @@ from deixis.ontology.models.relations import FAMILIES, RelationModel, RelationMo
 from deixis.ontology.relations.relation import Relation
 from deixis.plots.figure import INK, PAPER, new_figure, save
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.words.degrees import relation_degree
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,7 +74,7 @@ def field(relation: Relation, models: RelationModels, steps: int) -> tuple[NDArr
         centres = np.stack([places, np.full(steps, y)], axis=1)
         subjects = np.stack([centres - half, centres + half], axis=1)
         pairs = pair_geometry(np.concatenate([subjects, [REFERENCE]]))
-        degrees[row] = relation_degree(pairs, relation, models)[:-1, -1]
+        degrees[row] = WordDegrees(pairs, models).of(relation)[:-1, -1]
     return places, degrees
 
 

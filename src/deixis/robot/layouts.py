@@ -26,6 +26,7 @@ from deixis.perception.scene import OrientedBox, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.geometry.overlap import common_lengths, overlapping
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.evidence.properties.candidates import candidate_ratios
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
@@ -285,11 +286,10 @@ class LearnedLayout:
         ends, kinds, tables = self._tables(boxes, origin, len(scene.objects), ontology.relations)
         dispensable_roles = dispensable(self.graph.facts())
         optional = np.array([role in dispensable_roles for role in self.roles], dtype=bool)
-        low, high = scene.boxes[:, 0, :2], scene.boxes[:, 1, :2]
-        over = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
+        apart = np.logical_not(overlapping(scene.boxes[:, :, :2]))
         pieces = _pieces(scene.boxes)
         return TableEvidence(
-            identity, turn, straight, ends, kinds, tables, optional, np.logical_not(over), pieces, odds or MistakeOdds()
+            identity, turn, straight, ends, kinds, tables, optional, apart, pieces, odds or MistakeOdds()
         )
 
     def _poses(self, scene: Scene) -> tuple[Array, Array, NDArray[np.int64], NDArray[np.int64]]:
@@ -417,7 +417,7 @@ def _pieces(boxes: Array) -> NDArray[np.bool_]:
     """
     low, high = boxes[:, 0], boxes[:, 1]
     area = np.prod(high[:, :2] - low[:, :2], axis=1)
-    common = np.clip(np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None]), 0, None)
+    common = common_lengths(boxes)
     shared = np.prod(common[:, :, :2], axis=2)
     within = (shared >= PIECE_SHARE * area[:, None]) & (area[:, None] < area[None, :])
     flat = high[:, None, 2] <= high[None, :, 2] + PIECE_HEIGHT

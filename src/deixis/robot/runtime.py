@@ -113,13 +113,11 @@ class Runtime(Closing):
 class ThreadRunner(Runner):
     """A module in two threads of this process: one runs it, the other calls it with changes."""
 
-    def __init__(
-        self, board: Blackboard, module: Module, clock: Clock, report: Callable[[str], None], since: int | None = None
-    ) -> None:
+    def __init__(self, board: Blackboard, module: Module, clock: Clock, report: Callable[[str], None]) -> None:
         self._board, self._stopped = board, threading.Event()
         own = ModuleBoard(board, module, clock)
         self._subscription: Subscription = board.attend(
-            module.name, own.concerns, lambda change: module.changed(change, own), since, report
+            module.name, own.concerns, lambda change: module.changed(change, own), report=report
         )
         arguments = (module, own, self._stopped, report)
         self._thread = threading.Thread(target=run_until_stopped, args=arguments, name=module.name, daemon=True)

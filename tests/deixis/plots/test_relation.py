@@ -12,7 +12,7 @@ from deixis.ontology.models.relations import Provenance
 from deixis.ontology.tbox import default_ontology
 from deixis.plots.relation import REFERENCE, SUBJECT, field, relation_figure
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.words.degrees import relation_degree
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 RELATIONS = default_ontology().relations
@@ -24,7 +24,7 @@ def test_a_field_holds_the_degree_of_a_lone_object_at_each_place() -> None:
     for row, column in ((4, 2), (5, 1), (0, 6)):
         centre = places[[column, row]]
         pair = pair_geometry(np.array([[centre - half, centre + half], REFERENCE]))
-        assert degrees[row, column] == relation_degree(pair, RELATIONS["top_left"], shipped_models())[0, 1]
+        assert degrees[row, column] == WordDegrees(pair, shipped_models()).of(RELATIONS["top_left"])[0, 1]
 
 
 @pytest.mark.parametrize(("word", "least"), [("on", 0.04), ("under", 0.04), ("left", 0.04)])

@@ -172,7 +172,7 @@ def test_definition_1_labels_edges_by_word_and_vertices_by_name() -> None:
     view = graph("a b").paper_view()
     assert len(view.labels) == len(set(view.labels)) == 10
     assert {"left", "bottom_right", "on"} <= set(view.labels)
-    assert view.vertex_labels == view.vertices == ("a", "b")
+    assert view.vertices == ("a", "b")
     assert view.edges.shape == (0, 2)
     assert view.adjacency().shape == (10, 2, 2)
 

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from deixis.ontology.graph.claims import PLACES, Claim
 from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relations.relation import Relations
+from deixis.reasoning.geometry.overlap import gaps
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.grounding.evidence.claims.aims import AIMING, aim_degrees
@@ -315,8 +316,7 @@ class ClaimDegrees:
     @cached_property
     def gaps(self) -> Array:
         """Distances of the outlines of all pairs on the surface, shape (n, n)."""
-        low, high = self.boxes[:, 0, :2], self.boxes[:, 1, :2]
-        apart = np.maximum(np.maximum(low[:, None] - high[None], low[None] - high[:, None]), 0.0)
+        apart = gaps(self.boxes[:, :, :2])
         result: Array = np.hypot(apart[..., 0], apart[..., 1])
         return result
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.models.relations import FAMILIES, GRADED_FAMILIES, RelationModels
+from deixis.ontology.models.relations import FAMILIES, GRADED_FAMILIES
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.poses import Poses
@@ -80,7 +80,7 @@ class SceneWords:
         return sorted(found, key=lambda one: -one[3]) if n > 2 else []
 
 
-def scene_words(boxes: Array, poses: Poses | None = None, models: RelationModels | None = None) -> SceneWords:
+def scene_words(boxes: Array, poses: Poses | None = None) -> SceneWords:
     """Compute the probabilities of all graded words for a scene.
 
     Parameters
@@ -89,8 +89,6 @@ def scene_words(boxes: Array, poses: Poses | None = None, models: RelationModels
         Minimum and maximum corners, shape (n, 2, d).
     poses
         Orientation of the things; None for axes along the sides of the boxes, and no fronts.
-    models
-        Models of the words; the shipped ones by default.
 
     Returns
     -------
@@ -110,8 +108,7 @@ def scene_words(boxes: Array, poses: Poses | None = None, models: RelationModels
     """
     if len(boxes) > MAX_THINGS:
         raise LimitError(f"words are compared for at most {MAX_THINGS} things, got {len(boxes)}; use a smaller scene")
-    known = models or shipped_models()
-    fitting = WordDegrees(pair_geometry(boxes, poses), known)
+    fitting = WordDegrees(pair_geometry(boxes, poses), shipped_models())
     left_out = PASSIVE if boxes.shape[2] == 3 else PASSIVE | UPRIGHT
     words = [word for word in (*FAMILIES, *GRADED_FAMILIES) if word not in left_out]
     degrees = {word: np.where(fitting.undecided(word), np.nan, fitting.of_word(word)) for word in words}

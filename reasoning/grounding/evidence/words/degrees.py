@@ -288,31 +288,6 @@ class WordDegrees:
         return exact
 
 
-def relation_degree(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """Return the degree of one relation, as :meth:`WordDegrees.of` does.
-
-    Parameters
-    ----------
-    pairs
-        Geometry of the pairs.
-    relation
-        The relation, in its wide or exact reading.
-    models
-        Models of the words.
-
-    Returns
-    -------
-    ndarray
-        Degrees in [0, 1], shape (n, n).
-
-    Raises
-    ------
-    UnknownTermError
-        The word of the relation has no model.
-    """
-    return WordDegrees(pairs, models).of(relation)
-
-
 def saying_degree(pairs: PairGeometry, models: RelationModels) -> Array:
     """Return how readily people mention each ordered pair, whatever the word.
 
@@ -355,29 +330,3 @@ def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array
     """
     ratio: Array = np.log(outliers + (1 - outliers) * degree) - np.log(outliers + (1 - outliers) * chance)
     return ratio
-
-
-def relation_evidence(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """Return the log-likelihood ratio of a single relation for each ordered pair.
-
-    Parameters
-    ----------
-    pairs
-        Geometry of the pairs.
-    relation
-        The relation, in its wide or exact reading.
-    models
-        Models of the words.
-
-    Returns
-    -------
-    ndarray
-        Ratios in nats, shape (n, n).
-
-    Raises
-    ------
-    UnknownTermError
-        The word of the relation has no model.
-    """
-    model = models.of(relation)
-    return log_likelihood_ratio(relation_degree(pairs, relation, models), model.outliers, model.chance)

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.reasoning.geometry.overlap import common_lengths, gaps
 from deixis.reasoning.grounding.reference.query import Person
 
 Array = NDArray[np.float64]
@@ -187,17 +188,13 @@ class Room:
     @cached_property
     def gaps(self) -> Array:
         """Distances between the boxes of all pairs over the scale, shape (n, n); 0 where they touch or overlap."""
-        low, high = self.boxes[:, 0], self.boxes[:, 1]
-        apart = np.maximum(np.maximum(low[:, None] - high[None], low[None] - high[:, None]), 0.0)
-        result: Array = np.linalg.norm(apart, axis=2) / self.scale
+        result: Array = np.linalg.norm(gaps(self.boxes), axis=2) / self.scale
         return result
 
     @cached_property
     def plane_gaps(self) -> Array:
         """Distances between the boxes as seen from above, over the scale, shape (n, n)."""
-        low, high = self.boxes[:, 0, :2], self.boxes[:, 1, :2]
-        apart = np.maximum(np.maximum(low[:, None] - high[None], low[None] - high[:, None]), 0.0)
-        result: Array = np.linalg.norm(apart, axis=2) / self.scale
+        result: Array = np.linalg.norm(gaps(self.boxes[:, :, :2]), axis=2) / self.scale
         return result
 
     @cached_property
@@ -215,20 +212,16 @@ class Room:
     @cached_property
     def covered(self) -> Array:
         """Share of the first object's area that lies over or under the second one, shape (n, n)."""
-        low, high = self.boxes[:, 0, :2], self.boxes[:, 1, :2]
-        both = np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None])
-        area = np.prod(np.maximum(both, 0.0), axis=2)
-        own = np.maximum(np.prod(high - low, axis=1), 1e-9)
+        area = np.prod(common_lengths(self.boxes[:, :, :2]), axis=2)
+        own = np.maximum(np.prod(self.extents[:, :2], axis=1), 1e-9)
         result: Array = np.clip(area / own[:, None], 0.0, 1.0)
         return result
 
     @cached_property
     def contained(self) -> Array:
         """Share of the first object's volume that lies in the second one, shape (n, n)."""
-        low, high = self.boxes[:, 0], self.boxes[:, 1]
-        both = np.maximum(np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None]), 0.0)
-        sides = np.maximum(high - low, 1e-6)
-        result: Array = np.clip(np.prod(both / sides[:, None], axis=2), 0.0, 1.0)
+        shares = common_lengths(self.boxes) / np.maximum(self.extents, 1e-6)[:, None]
+        result: Array = np.clip(np.prod(shares, axis=2), 0.0, 1.0)
         return result
 
     @cached_property
@@ -269,31 +262,31 @@ class Room:
         return self.headings[person] if person in self.headings else -next(iter(self.headings.values()))
 
     @cached_property
-    def inward(self) -> Array:
-        """Unit vectors from the nearest wall of the room towards its inside, for each object, shape (n, 2)."""
+    def from_walls(self) -> Array:
+        """Distances of each object from the left, near, right and far wall of the room, shape (n, 4)."""
         low = self.boxes[:, 0, :2] - self.bounds[0, :2]
         high = self.bounds[1, :2] - self.boxes[:, 1, :2]
-        apart = np.concatenate([low, high], axis=1)  # left, near, right, far
+        return np.concatenate([low, high], axis=1)
+
+    @cached_property
+    def inward(self) -> Array:
+        """Unit vectors from the nearest wall of the room towards its inside, for each object, shape (n, 2)."""
         sides = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
         thin = self.extents[:, :2] / np.maximum(self.extents[:, :2].sum(axis=1, keepdims=True), 1e-9)
-        cost = apart + self.scale * np.concatenate([thin, thin], axis=1)  # a flat object lies along its wall
+        cost = self.from_walls + self.scale * np.concatenate([thin, thin], axis=1)  # a flat object lies along its wall
         result: Array = sides[cost.argmin(axis=1)]
         return result
 
     @cached_property
     def wall_gaps(self) -> Array:
         """Distance of each object from the nearest wall of the room over the scale, shape (n,)."""
-        low = self.boxes[:, 0, :2] - self.bounds[0, :2]
-        high = self.bounds[1, :2] - self.boxes[:, 1, :2]
-        result: Array = np.concatenate([low, high], axis=1).min(axis=1) / self.scale
+        result: Array = self.from_walls.min(axis=1) / self.scale
         return result
 
     @cached_property
     def corner_gaps(self) -> Array:
         """Distance of each object from the nearest corner of the room over the scale, shape (n,)."""
-        low = self.boxes[:, 0, :2] - self.bounds[0, :2]
-        high = self.bounds[1, :2] - self.boxes[:, 1, :2]
-        apart = np.minimum(low, high)
+        apart = np.minimum(self.from_walls[:, :2], self.from_walls[:, 2:])
         result: Array = np.hypot(apart[:, 0], apart[:, 1]) / self.scale
         return result
 

@@ -149,10 +149,10 @@ def opened_states(network: Network, joint: bool = False, traced: bool = False) -
     return states
 
 
-def closed_states(
-    network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, traced: bool = False
-) -> tuple[tuple[NetworkState, ...], bool]:
-    """Return the states of the axes, or of the whole, closed up to a contradiction; False if out of time.
+def traced_closure(network: Network, deadline: Deadline) -> tuple[tuple[NetworkState, ...], bool]:
+    """Return the states of the axes, or of the whole, closed with a record of the changes; False if out of time.
+
+    Closing ends at the first contradiction. The record is needed for explanations.
 
     Parameters
     ----------
@@ -160,18 +160,14 @@ def closed_states(
         The network.
     deadline
         End of the time limit.
-    progress
-        Function that is called with the number of propagated changes and the number with the waiting ones.
-    traced
-        Whether to record the changes, for explanations.
 
     Returns
     -------
     tuple
         The states, and whether closing was completed.
     """
-    states = opened_states(network, traced=traced)
-    return states, close_states(states, deadline, progress)
+    states = opened_states(network, traced=True)
+    return states, close_states(states, deadline, progress=None)
 
 
 def close_states(states: Sequence[NetworkState], deadline: Deadline, progress: Progress | None) -> bool:

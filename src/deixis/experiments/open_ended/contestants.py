@@ -15,7 +15,7 @@ from deixis.perception.recognition.settings import PAPER, RecognitionSettings
 EQUATIONS = "equations 1-4"
 THINGS = "ICD of things"
 NEAREST = "equations 1-2"
-D2, D2_TITLE = "d2_extents", "D2 and extents"
+D2 = "d2_extents"
 SPIN = "spin_images"
 SVDD = "SVDD"
 UPRIGHT = "upright"

@@ -116,12 +116,18 @@ def of_layouts(after: After, nodes: Iterable[object], relations: Relations) -> s
     found: set[ox.Triple] = set()
     for node in nodes:
         assert isinstance(node, ox.NamedNode)
-        parts = [t.subject for t in after.triples(GraphName.LEARNED, None, IN_LAYOUT, node)]
-        triples = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
         whole = any(after.triples(GraphName.INFERRED, node, STORED, typed(True)))  # a query may have completed it
-        for layout in layouts(triples, relations):
+        for layout in _learned_layouts(after, node, relations):
             found.update(implied_triples(layout, relations, math.inf if whole else None))
     return found
+
+
+def _learned_layouts(
+    after: After, node: ox.NamedNode | ox.BlankNode | ox.Triple, relations: Relations
+) -> tuple[LayoutConcept, ...]:
+    """Return the layout of a node, from the learned triples about the node and its parts."""
+    parts = [t.subject for t in after.triples(GraphName.LEARNED, None, IN_LAYOUT, node)]
+    return layouts([t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)], relations)
 
 
 def completion(after: After, relations: Relations, deadline: Deadline) -> Change:
@@ -148,9 +154,7 @@ def completion(after: After, relations: Relations, deadline: Deadline) -> Change
     come: set[ox.Triple] = set()
     for marked in list(after.triples(GraphName.INFERRED, None, STORED, typed(False))):
         node = marked.subject
-        parts = [t.subject for t in after.triples(GraphName.LEARNED, None, IN_LAYOUT, node)]
-        triples = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
-        for layout in layouts(triples, relations):
+        for layout in _learned_layouts(after, node, relations):
             added: list[ox.Triple] = []
             for triple in implied_triples(layout, relations, math.inf):
                 added.append(triple)

@@ -18,6 +18,7 @@ from deixis.grammar.reading import StatedFact
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.reasoning.geometry.overlap import gaps
 from deixis.reasoning.grounding.evidence.claims.aims import stated_direction
 from deixis.reasoning.grounding.evidence.properties.colours import colour_terms
 from deixis.reasoning.grounding.reference.expressions import (
@@ -118,15 +119,13 @@ def _attributes(scene: Scene, ontology: Ontology, deadline: Deadline) -> Attribu
         [thing.colour if thing.colour is not None else (np.nan,) * 3 for thing in scene.objects], dtype=float
     )
     terms = colour_terms(seen, ontology.colours)
-    low, high = scene.boxes[:, 0, :], scene.boxes[:, 1, :]
-    apart = np.maximum(0.0, np.maximum(low[:, None] - high[None], low[None] - high[:, None]))
-    extents = high - low
+    extents = scene.boxes[:, 1] - scene.boxes[:, 0]
     return Attributes(
         nouns,
         tuple(None if term is None else term.label for term in terms),
         extents[:, 0] * extents[:, 1],
         scene.relations(ontology.relations, deadline=deadline),
-        np.sqrt((apart**2).sum(axis=2)),
+        np.sqrt((gaps(scene.boxes) ** 2).sum(axis=2)),
     )
 
 

@@ -18,6 +18,7 @@ from deixis.deadline import Deadline
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.reasoning.comparison.claims import ClaimOutcome, check_claims
+from deixis.reasoning.geometry.overlap import overlapping
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.claims.places import CENTRAL, TOWARDS, X
@@ -221,9 +222,7 @@ def _score(degrees: Array) -> float:
 
 
 def _overlaps(boxes: Array) -> NDArray[np.bool_]:
-    low, high = boxes[:, 0, :2], boxes[:, 1, :2]
-    apart = np.maximum(low[:, None], low[None]) >= np.minimum(high[:, None], high[None])
-    found: NDArray[np.bool_] = np.logical_not(np.any(apart, axis=2))
+    found = overlapping(boxes[:, :, :2])
     np.fill_diagonal(found, False)
     return found
 

@@ -34,6 +34,7 @@ from deixis.perception.simulator.meshes.tableware import drawn_plan, form_of
 from deixis.perception.simulator.scatter import scattered
 from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
 from deixis.reasoning.entailment.realisation.verification import facts_that_hold
+from deixis.reasoning.geometry.overlap import overlapping
 from deixis.workflows.layouts.imagine import Sized, lying_across, sized_objects
 
 if TYPE_CHECKING:
@@ -339,7 +340,7 @@ def _lay_and_straighten(plan: _Plan) -> LaidTable:
         boxes = _boxes_as_laid(plan, laid)
         # Wrong are things in a fact that holds of the plan and no longer does, and those that come to overlap.
         broken = facts_that_hold(plan.graph, plan.boxes) & ~facts_that_hold(plan.graph, boxes)
-        wrong = np.any(_overlapping(boxes) & ~_overlapping(plan.boxes), axis=1)
+        wrong = np.any(overlapping(boxes) & ~overlapping(plan.boxes), axis=1)
         wrong[plan.graph.subjects[broken]] = wrong[plan.graph.objects[broken]] = True
         wrong &= turns != 0
         if not wrong.any():
@@ -372,12 +373,6 @@ def _boxes_as_laid(plan: _Plan, laid: LaidTable) -> NDArray[np.float64]:
     for thing in laid.things:
         boxes[number[thing.name]] = thing.box[:, :2]
     return boxes
-
-
-def _overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    low, high = boxes[:, 0], boxes[:, 1]
-    found: NDArray[np.bool_] = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
-    return found
 
 
 def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:

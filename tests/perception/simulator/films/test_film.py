@@ -19,7 +19,7 @@ def test_passing_hand_hides_a_thing_for_two_seconds() -> None:
     shown = [frame.things[1].points for frame in frames]
     hidden = [points < 0.5 * shown[0] for points in shown]
     assert sum(hidden) >= 9 and not any(frame.things[1].held for frame in frames)
-    assert shown[-1] > 0.9 * shown[0] and frames[-1].hand_points == 0
+    assert shown[-1] > 0.9 * shown[0]
 
 
 def test_equal_seeds_give_equal_clouds() -> None:

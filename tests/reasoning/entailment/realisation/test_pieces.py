@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.ontology.graph.graph import Fact
-from deixis.ontology.relations.allen import Allen, mask_array
+from deixis.ontology.relations.allen import Allen, members
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.realisation.pieces import Piece, X, Y, choice, region
 from deixis.reasoning.geometry.allen import EndOrder
@@ -20,7 +20,8 @@ R = default_ontology().relations
 def admitted_by(piece: Piece) -> NDArray[np.bool_]:
     """Return the atoms that inequalities admit together, shape (13, 13): the inverse of :func:`choice`."""
     masks = [admitted_atoms(tuple(EndOrder(*i[1:]) for i in piece if i.axis == axis)) for axis in (X, Y)]
-    found: NDArray[np.bool_] = mask_array(masks[X])[:, None] & mask_array(masks[Y])[None, :]
+    found = np.zeros((13, 13), dtype=bool)
+    found[np.ix_(members(masks[X]), members(masks[Y]))] = True
     return found
 
 

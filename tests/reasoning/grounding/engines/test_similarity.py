@@ -29,7 +29,7 @@ LABELS = ("left", "right", "top", "on")
 def paper_graph(n: int, edges: list[Edge]) -> PaperGraph:
     vertices = tuple(f"v{i}" for i in range(n))
     ends = np.array([edge[:2] for edge in edges], dtype=np.int32).reshape(-1, 2)
-    return PaperGraph(vertices, vertices, ends, np.array([edge[2] for edge in edges], dtype=np.int8), LABELS)
+    return PaperGraph(vertices, ends, np.array([edge[2] for edge in edges], dtype=np.int8), LABELS)
 
 
 @st.composite

@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.errors import GraphError
 from deixis.experiments.generated_tables import generate
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Relations
@@ -84,23 +83,6 @@ def test_reordered_evidence_says_the_same(top_left_pair: SceneRelations, graph_o
     np.testing.assert_array_equal(turned.unary, evidence.unary[::-1, ::-1])
     np.testing.assert_array_equal(turned.allowed, [[True, True], [False, True]])
     assert turned.total(np.array([0, 1])) == evidence.total(np.array([0, 1]))
-
-
-@pytest.mark.parametrize(
-    ("sentences", "message"),
-    [
-        (["exactly_left(a, b)"], r"\(b, a\)"),
-        (["left(a, b)", "right(b, a)"], r"\(a, b\)"),
-        (["exactly_left(a, b)", "not exactly_right(b, a)"], r"\(b, a\)"),
-        (["exactly_left or exactly_top(a, b)", "exactly_right(b, a)"], r"\(a, b\)"),
-        (["exactly_left(a, b)", "exactly_right(b, a)", "exactly_top(a, b)"], "every ordered pair"),
-    ],
-)
-def test_pair_without_a_unique_exact_relation_is_an_error(
-    sentences: list[str], message: str, graph_of: MakeGraph
-) -> None:
-    with pytest.raises(GraphError, match=message):
-        SceneRelations.from_graph(graph_of(*sentences, nodes="a b"))
 
 
 @given(st.integers(1, 60), st.integers(1, 400))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from graded_words import relation_evidence
 from scipy.optimize import check_grad
 
 from deixis.errors import GraphError
@@ -13,7 +14,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
-from deixis.reasoning.grounding.evidence.words.degrees import relation_evidence, saying_degree, word_degree
+from deixis.reasoning.grounding.evidence.words.degrees import saying_degree, word_degree
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.fitting.fit import (
     FEW_SCENES,

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from graded_words import relation_evidence
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from laid_boxes import tables
@@ -19,7 +20,6 @@ from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import box_relations, scene_relations
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.evidence.facts.facts import crisp_tables, fact_tables, hedged
-from deixis.reasoning.grounding.evidence.words.degrees import relation_evidence
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.matching.problem import Problem
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from graded_words import relation_evidence
 from hypothesis import given
 from hypothesis import strategies as st
 from laid_boxes import tables
@@ -16,10 +17,9 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.evidence.words.degrees import (
+    WordDegrees,
     degree_of_view,
     log_likelihood_ratio,
-    relation_degree,
-    relation_evidence,
     saying_degree,
     word_degree,
 )
@@ -41,7 +41,7 @@ def degree(word: str, subject: list[list[float]], object: list[list[float]]) -> 
 @given(tables(axes=3), st.sampled_from(list(RELATIONS)))
 def test_degrees_and_evidence_are_bounded_for_empty_boxes(boxes: Array, name: str) -> None:
     pairs = pair_geometry(boxes)
-    degrees = relation_degree(pairs, RELATIONS[name], MODELS)
+    degrees = WordDegrees(pairs, MODELS).of(RELATIONS[name])
     assert np.all((degrees >= 0) & (degrees <= 1))
     assert np.isfinite(relation_evidence(pairs, RELATIONS[name], MODELS)).all()
     assert np.all((saying_degree(pairs, MODELS) > 0) & (saying_degree(pairs, MODELS) <= 1))

@@ -9,7 +9,7 @@ from deixis.grammar.layout.parser import parse_script
 from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.words.degrees import relation_degree
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.words.meaning import CHANCE, shipped_models
 from deixis.reasoning.grounding.fitting.fit import chance_degree, random_scenes
 from deixis.workflows.grounding.ground import ground
@@ -53,15 +53,15 @@ TABLE = np.array(
     ],
 )
 def test_words_hold_of_plain_cases(word: str, subject: int, thing: int, holds: bool) -> None:
-    degree = relation_degree(pair_geometry(TABLE), R[word], shipped_models())[subject, thing]
+    degree = WordDegrees(pair_geometry(TABLE), shipped_models()).of(R[word])[subject, thing]
     assert (degree >= 0.5) == holds
 
 
 def test_an_inverse_has_the_degrees_of_the_reversed_pair() -> None:
-    pairs, models = pair_geometry(TABLE), shipped_models()
+    words = WordDegrees(pair_geometry(TABLE), shipped_models())
     for relation in GRADED:
-        degrees = relation_degree(pairs, relation, models)
-        np.testing.assert_allclose(degrees, relation_degree(pairs, R[relation.inverse], models).T, atol=1e-12)
+        degrees = words.of(relation)
+        np.testing.assert_allclose(degrees, words.of(R[relation.inverse]).T, atol=1e-12)
         assert (degrees > 0).all()
         assert (degrees <= 1).all()
 
