@@ -21,6 +21,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     POSSESSIVES,
     PRONOUNS,
     TYPOS,
+    UNITS,
 )
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
@@ -294,6 +295,8 @@ def _read_hours(words: list[Word]) -> None:
             del words[i - 1]
 
 
+MAX_DIGITS = 4
+"""Maximum number of digits of a number in a range."""
 _HOUR = re.compile(r"(1[0-2]|[1-9])(?::[0-5]\d)?")
 """An hour of a clock face as a direction; minutes make no difference."""
 
@@ -320,6 +323,34 @@ def _read_and_or(words: list[Word]) -> None:
         if [word.norm for word in words[i : i + 3]] == ["and", "/", "or"]:
             words[i].norm, words[i].end = "or", words[i + 2].end
             del words[i + 1 : i + 3]
+
+
+def _read_ranges(words: list[Word]) -> None:
+    """Read *two to three cups* and *two/three cups* as *2-3 cups*, and *5 mm to 10 mm* as *10 mm*."""
+    for i in range(len(words) - 4, -1, -1):
+        norms = [word.norm for word in words[i : i + 5]]
+        if i and words[i - 1].norm in ("from", "between"):
+            continue
+        if len(norms) == 5 and norms[2] == "to" and norms[1] == norms[4] and norms[1] in UNITS:
+            del words[i : i + 3]
+            continue
+        spelled = norms[0].isalpha() and norms[2].isalpha()  # '1/2' is a half
+        if norms[1] != "to" and not (norms[1] == "/" and spelled):
+            continue
+        first, last = (NUMBERS.get(n, int(n) if n.isdecimal() and len(n) <= MAX_DIGITS else 0) for n in norms[:3:2])
+        if not 0 < first < last:
+            continue
+        if norms[3].isalpha() and norms[3] not in UNITS.keys() | prepositions().keys() | IS_FORMS | {"and", "o'clock"}:
+            words[i].norm, words[i].end = f"{first:g}-{last:g}", words[i + 2].end
+            del words[i + 1 : i + 3]
+
+
+def _without_set_aside(words: list[Word]) -> None:
+    """Leave out the particle of *set aside a shelf for pans*, which is not a place."""
+    for i in range(len(words) - 2, -1, -1):
+        if words[i].norm in ("set", "put", "lay") and words[i + 1].norm == "aside":
+            words[i].end = words[i + 1].end
+            del words[i + 1]
 
 
 def _read_setups(words: list[Word]) -> None:
@@ -362,7 +393,7 @@ _MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear ch
 
 
 def _read_fractions(words: list[Word]) -> None:
-    """Read *1/2* and *1 1/2* before a word, which are three and four marks, as one number."""
+    """Read *1/2* and *1 1/2* before a word as one number, and *the bottom third of it* as *the bottom half of it*."""
     for i in range(len(words) - 3, -1, -1):
         one, slash, other = words[i : i + 3]
         part = _DENOMINATOR.match(other.norm)
@@ -376,8 +407,13 @@ def _read_fractions(words: list[Word]) -> None:
             value, first = value + int(words[i - 1].norm), i - 1
         number = Word(one.text, f"{value:.4g}{part[2]}", words[first].start, other.end, True)
         words[first : i + 3] = [number]
+    for i in range(1, len(words)):
+        ends = i + 1 == len(words) or words[i + 1].norm == "of" or not words[i + 1].is_word
+        if words[i].norm in ("third", "quarter") and words[i - 1].norm in _FRACTIONAL and ends:
+            words[i].norm = "half"
 
 
+_FRACTIONAL = frozenset({"top", "bottom", "upper", "lower", "left", "right", "front", "back", "middle"})
 _DENOMINATOR = re.compile(r"(2|3|4|8|16)((?:-[a-z]+)?)$")
 
 
@@ -724,6 +760,8 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_levels(found)
     _read_opposites(found)
     _read_and_or(found)
+    _read_ranges(found)
+    _without_set_aside(found)
     _read_setups(found)
     _without_settings(found)
     _read_facing_commands(found)

@@ -131,7 +131,10 @@ class Chunker(FixedPhraseChunker):
         if (
             self.norms[at] == "back"
             and self._previous() in FINITE | {"PART", "NP", "NOT"}
-            and (self.norms[at + 1] in prepositions() and self.norms[at + 1] not in ("of", "to"))
+            and self.norms[at + 1] in prepositions()
+            and (
+                self.norms[at + 1] not in ("of", "to") or (self.norms[at + 1] == "to" and not self.nouns.starts(at + 2))
+            )
         ):
             return Chunk("ADVERB", at, at + 1, "back")
         if self.norms[at + 1] in ("quarters", "quarter", "thirds", "third") and self.norms[at + 2] in _HALF_STATES:

@@ -60,7 +60,7 @@ class ModifierFinder(NounFinder):
                 "topped",
                 "framed",
                 "mounted",
-            ) and (self._continues(i + 2) and norm not in self._closed):
+            ) and (self._continues(i + 2) and norm not in self._closed and norms[i + 2] not in prepositions()):
                 dimension = {"shaped": "shape", "colored": "colour", "coloured": "colour", "sized": "size"}.get(
                     norms[i + 1], "other"
                 )

@@ -199,6 +199,7 @@ class NounChunker(ModifierFinder):
                 or after in ORDINALS
                 or after == "very"
                 or self.adjective_before_noun(at + 1)
+                or (norm in ("this", "these", "those") and self._is_done(at + 1) and self.is_noun(at + 2))
             ):
                 if not (after in self._verbs and self._verbs[after].form in ("s",)):
                     return None

@@ -369,6 +369,8 @@ class NounFinder:
             return False
         if norm in ("next", "near", "close", "opposite"):
             return False
+        if norm == "face" and self.norms[at + 1] in ("up", "down") and at and not self.is_determiner(at - 1):
+            return False  # 'lay the top face down'
         back = at - 1
         while back > 0 and (
             self.norms[back] in HEDGES or self.norms[back] in ("just", "also", "only", "now", "still", "always")
@@ -419,6 +421,8 @@ class NounFinder:
         if named and before.isalpha() and before not in PUT_VERBS and self._nouns.knows(f"{before} {norm}"):
             return True  # 'a fork and a dessert spoon above the plate'
         if form.form == "ing":
+            if before == "by" and form.lemma in PUT_VERBS and (self.starts(at + 1) or self._nounish(at + 1)):
+                return False  # 'by inserting planking into the slot'
             if norm == "setting" and before in ("place", "table") and not self.is_determiner(at + 1):
                 return True
             if (
@@ -484,7 +488,10 @@ class NounFinder:
         if spatial and form.form == "s" and before == "other" and self.norms[at - 2] == "the":
             return False  # 'the other lies under the bench'
         commanded = at < 2 or self.norms[at - 2] in ("and", ",", "then", "never", "not", "please", "always", ";", ":")
-        if form.form == "s" and before in PUT_VERBS and commanded and self._nouns.singular(norm)[1]:
+        putting = self._verbs.get(before)
+        commanded = commanded or (at > 1 and self.norms[at - 2] == "by" and before not in PUT_VERBS)
+        puts = before in PUT_VERBS or (putting is not None and putting.form == "ing" and putting.lemma in PUT_VERBS)
+        if form.form == "s" and puts and commanded and self._nouns.singular(norm)[1]:
             return True  # 'keep drinks away from it'
         if form.form == "s" and form.kind == "transitive" and after in _CLAUSE_ENDS and self._nouns.singular(norm)[1]:
             return True  # 'the holes in the corner blocks.'
@@ -797,8 +804,16 @@ class NounFinder:
     def _is_unknown_verb(self, at: int, nouns: list[str]) -> bool:
         """Return True for an unknown word that looks like a verb after a known noun: *the lamp blorps at the desk*."""
         norm, after = self.norms[at], self.norms[at + 1]
-        if not nouns or not norm.endswith("s") or norm.endswith("ss") or is_known(norm) or self._nouns.knows(norm):
+        if not nouns or is_known(norm) or self._nouns.knows(norm):
             return False
+        if not norm.endswith(("ing", "ed")) and self._ends_counted(at, nouns):
+            return after in prepositions() or after in ARTICLES
+        if not norm.endswith("s") or norm.endswith("ss"):
+            return False
+        aim = self._verbs.get(self.norms[at + 2])
+        aims = after == "to" and ((aim is not None and aim.form == "base") or self.norms[at + 2] == "be")
+        if aims and not self._nouns.singular(nouns[-1])[1]:
+            return True  # 'milk tends to stand on it'
         if (
             not (after in prepositions() or after in ARTICLES or after in ("you", "me", "us", "them"))
             or self._nouns.singular(nouns[-1])[1]
@@ -934,6 +949,13 @@ class NounFinder:
         rest = self.norms[at:]
         end = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
         return IS_FORMS.isdisjoint(rest[:end])
+
+    def _ends_counted(self, at: int, nouns: list[str]) -> bool:
+        """Return True if a word cannot follow a counted plural in one phrase: *three parts contribute*."""
+        if not self._nouns.singular(nouns[-1])[1] or not self._counted(at - len(nouns)):
+            return False
+        following = next((k for k in range(at, len(self.norms)) if not self._nounish(k)), len(self.norms))
+        return not any(self._nouns.singular(norm)[1] for norm in self.norms[at:following])
 
     def _lists_plurals(self, at: int) -> bool:
         """Return True for a bare plural before *and*, as in a list of things."""

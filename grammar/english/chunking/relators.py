@@ -341,7 +341,8 @@ class RelatorChunker:
         if unit == "a" and self.norms[i + 2] == "half":
             unit = self.norms[i + 2]
         scale = UNITS.get(unit) or (UNITS.get(unit[:-1]) if unit.endswith("s") else None)
-        if scale is None or (unit in ("hand", "finger", "foot", "m") and self.norms[i + 2] in IS_FORMS):
+        limb = unit in _BODY and self._previous() == "PREP"  # 'into one arm'
+        if scale is None or limb or (unit in ("hand", "finger", "foot", "m") and self.norms[i + 2] in IS_FORMS):
             return None
         end = i + 2
         if (self.norms[end] == "of" and bound is None) or self.norms[end] in (

@@ -192,7 +192,7 @@ def _sided(
             arguments,
             span,
         )
-    if head == "position" and not sides and phrase.adjectives:
+    if head == "position" and not sides and phrase.adjectives and phrase.adjectives[0].dimension != "other":
         return _made(relator, "state", (), span, value=phrase.adjectives[0])
     if head in ("direction", "position") or kind == "side":
         pure = tuple(s for s in sides if s in ("left", "right", "top", "bottom", "front", "back"))

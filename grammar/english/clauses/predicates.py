@@ -70,6 +70,8 @@ _HANGING = frozenset({"hang", "dangle", "suspend", "swing", "droop", "sling"})
 """Verbs after which what is *from* a thing is on it."""
 _LYING = frozenset({"lay", "lie", "fall", "rest"})
 """Verbs after which *on its left side* says how a thing lies."""
+_LAID = _LYING | {"turn", "flip", "tip", "put", "place", "set"}
+"""Verbs after which *on its back* says how a thing lies."""
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 _LEAPING = word_set("jump leap climb walk step pass skip hop")
 """Verbs of a motion past a thing."""
@@ -626,6 +628,9 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "middle"
     elif lemma in _LYING and relation in ("left", "right") and following.part == "side" and _is_it(arguments):
         lying = Adjective("sideways", "state", Degree.PLAIN, following.span)  # 'lay the frame on its left side'
+        return Predicate("state", (), span, value=lying, positive=marker.positive)
+    elif lemma in _LAID and relation == "part" and following.part in ("far", "back") and _is_it(arguments):
+        lying = Adjective("on its back", "state", Degree.PLAIN, following.span)  # 'turn the chair on its back'
         return Predicate("state", (), span, value=lying, positive=marker.positive)
     elif lemma == "hang" and relation == "part" and arguments:
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'

@@ -15,7 +15,7 @@ ARRANGEMENTS = word_set(
 """Nouns after *in* that say how several things lie."""
 CIRCUMSTANCES = word_set(
     "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
-    " setting settings game games emergency emergencies"
+    " setting settings game games emergency emergencies colour color"
 )
 """Nouns that name no place after *in*, *at*, *as*, *on* and *under*: *in a formal setting*."""
 HOLIDAYS = word_set(

@@ -256,3 +256,68 @@ def test_coordinated_things_and_places(text: str, expected: list[str]) -> None:
 )  # fmt: skip
 def test_members_of_lists_are_all_placed(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Slide the crate with the hinges onto the rack.", ["on(crate, rack)"]),
+        ("Insert the board with drilled holes into the slot.", ["inside(board, slot)"]),
+        ("Drop the bag of tea with the paper tag into the pot.", ["inside(bag, pot)"]),
+        ("Place on the stove the kettle.", ["on(kettle, stove)"]),
+        ("Insert into the slot, the panel of glass.", ["inside(panel, slot)"]),
+        ("Push the rods into one arm.", ["inside(rods, arm)"]),
+        ("The cup is one arm from the jug.", ["distance(cup, jug, 0.7 m)"]),
+    ],
+)
+def test_goal_of_motion_is_that_of_the_object(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Fix the seat by sliding the bar between the legs.", ["between(bar, leg_1, leg_2)"]),
+        ("Fasten it by inserting screws into the holes.", ["inside(screws, holes)"]),
+        ("Pack the dish by wrapping each bowl and then putting them in a box. The lid is on the box.",
+         ["on(lid, box)"]),
+    ],
+)  # fmt: skip
+def test_means_put_things_where_they_are_told(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Put two to three lemons in the jug.", ["inside(lemons, jug)"]),
+        ("Stand three/four candles on the box.", ["on(candles, box)"]),
+        ("Put a 5 mm to 10 mm layer of moss on the box.", ["on(moss, box)"]),
+        ("Move the dial from two to three. The jug is on the box.", ["on(jug, box)"]),
+    ],
+)
+def test_ranges_of_numbers_count_things(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Lay the lid face down on the towel.", ["on(lid, towel)", "upside_down(lid)"]),
+        ("Turn the stool on its back.", []),
+        ("Place the stool in the proper position on the mat.", ["on(stool, mat)"]),
+        ("Put these wrapped cups in the box.", ["inside(cups, box)"]),
+        ("Fill the bottom third of the jar with pebbles.", ["inside(pebbles, jar)"]),
+        ("Pour beads in your favourite colour into the bowl.", ["inside(beads, bowl)"]),
+        ("Push the stool back to make room. The jug is on the mat.", ["on(jug, mat)"]),
+        ("Set aside a shelf for pans. The jug is on the mat.", ["on(jug, mat)"]),
+    ],
+)
+def test_words_about_posture_and_manner_name_no_place(text: str, expected: list[str]) -> None:
+    assert sorted(asserted(text)) == expected
+
+
+@pytest.mark.parametrize("text", ["Three panels contribute to the view.", "Two lamps glimmer on the shelf."])
+def test_word_after_a_counted_plural_is_a_verb(text: str) -> None:
+    reading = read(f"The cup is on the box. {text}")
+    assert not any("contribute" in str(f.content) or "glimmer" in str(f.content) for f in reading.stated)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.clauses.rewriting.editing import (
     BREAKS,
+    ENDS,
     HANDS,
     Run,
     cut,
@@ -14,6 +15,7 @@ from deixis.grammar.english.clauses.rewriting.editing import (
     leave_out,
     type_at,
     without,
+    word_of,
 )
 from deixis.grammar.english.vocabulary.nouns import last_word
 from deixis.grammar.english.vocabulary.tables import word_set
@@ -29,6 +31,9 @@ _SERVING = word_set(
     "ensure allow help save keep simplify reduce minimize minimise protect improve free facilitate maximize maximise"
 )
 """Verbs of what a placement is good for."""
+
+_MEANS = (PLACING_VERBS | PUT_VERBS) - word_set("start finish turn top cover fill flank surround dot add press")
+"""Verbs of means that say where their object comes to be: *by burying the roots in the soil*."""
 
 _GOOD = word_set(
     "good great best better ideal important helpful useful convenient safest easiest key essential perfect"
@@ -124,11 +129,13 @@ def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
     for at, chunk in enumerate(chunks[:-3]):
         named = chunk.type == "UNKNOWN" and chunk.value == "by" and chunk.end == chunk.start + 1
         group = chunks[at + 1].value if named and chunks[at + 1].type == "TPART" else None
-        if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in PLACING_VERBS:
+        if not isinstance(group, VerbGroup) or group.form != "ing" or group.lemma not in _MEANS:
             continue
         end = end_before(chunks, at + 2, BREAKS)
         thing = chunks[at + 2].value if chunks[at + 2].type == "NP" else None
-        placed = any(other.type in ("PREP", "ADV") for other in chunks[at + 3 : end])
+        place = at + 3 + 2 * ([type_at(chunks, at + k) for k in (3, 4)] == ["OF", "NP"])
+        place += type_at(chunks, place) == "ADVERB"
+        placed = place < end and type_at(chunks, place) in ("PREP", "ADV")
         if not placed or thing is None or last_word(thing.head) in HANDS:
             continue
         command = replace(chunks[at + 1], type="PUT", value=replace(group, form="base"))
@@ -137,6 +144,47 @@ def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
             chunks[at + 2] = replace(chunks[at + 2], value=replace(treated, determiner="the", count=None))
         ends = [cut(chunks[end])] if type_at(chunks, end) == "COMMA" else chunks[end : end + 1]
         return [*chunks[:at], cut(chunk), command, *chunks[at + 2 : end], *ends, *chunks[end + 1 :]]
+    return chunks
+
+
+def _accompaniment(chunks: list[Chunk], at: int) -> Run | None:
+    """Find what tells the object of a command from others, before its goal: *slide the box with the lid onto it*.
+
+    *Into* and *onto* go with the verb and never with the noun before them, so that the object moves, not what it has.
+    """
+    first = chunks[at]
+    named = first.type == "WITH" or (first.type == "UNKNOWN" and first.value == "with")
+    moved = at - 1
+    while type_at(chunks, moved - 1) == "OF" and type_at(chunks, moved) == "NP":
+        moved -= 2
+    ordered = [type_at(chunks, moved - 1), type_at(chunks, moved)] == ["PUT", "NP"] and bool(chunks[moved].value.head)
+    if not named or not ordered or type_at(chunks, at + 1) != "NP":
+        return None
+    end = at + 2
+    while [type_at(chunks, end), type_at(chunks, end + 1)] == ["OF", "NP"]:
+        end += 2
+    if type_at(chunks, end) != "PREP" or word_of(chunks[end]) not in ("into", "onto"):
+        return None
+    leave_out(chunks[at:end], "'with' says which thing is meant, not where it is")
+    return end, None
+
+
+def _with_objects_after_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *place on the tray the cup* and *slide into the slot, the panel* with the object before its place."""
+    for i in range(len(chunks) - 4):
+        if [type_at(chunks, i + k) for k in range(4)] != ["PUT", "NP", "PREP", "NP"] or chunks[i + 1].value.head:
+            continue
+        place = i + 4
+        while [type_at(chunks, place), type_at(chunks, place + 1)] == ["OF", "NP"]:
+            place += 2
+        thing = place + (type_at(chunks, place) == "COMMA")
+        end = thing + 1
+        while [type_at(chunks, end), type_at(chunks, end + 1)] == ["OF", "NP"]:
+            end += 2
+        whole = type_at(chunks, thing) == "NP" and type_at(chunks, end) in ENDS
+        if not whole or word_of(chunks[i + 2]) == "in" or chunks[thing].value.determiner is None:
+            continue  # 'put in a cup, a spoon and a knife'
+        return [*chunks[: i + 1], *chunks[thing:end], *chunks[i + 2 : place], *chunks[end:]]
     return chunks
 
 
@@ -153,7 +201,7 @@ def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_denied_commands, _with_participles_of_commands, without(_second_verb), _with_verbs_of_one_person,
-    _with_means_as_commands, _with_placements_as_commands,
+    _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
+    without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands, _with_placements_as_commands,
 )  # fmt: skip
 """Rewritings of commands, in their order."""
