@@ -15,7 +15,7 @@ MAX_INCLUDE_DEPTH = 32  # maximum depth of nested includes
 MAX_INCLUDED_FILES = 1_000  # maximum number of files that one script includes
 
 
-def read_text(path: Path, shown: str, lenient: bool = False) -> str:
+def read_text(path: Path, shown: str, undecoded: str = "strict") -> str:
     """Return the text of a file, decoded from UTF-8.
 
     Parameters
@@ -24,8 +24,9 @@ def read_text(path: Path, shown: str, lenient: bool = False) -> str:
         The file to read.
     shown
         Name of the file in error messages.
-    lenient
-        Decode bytes that are not UTF-8 as the replacement character instead of raising an error.
+    undecoded
+        What becomes of bytes that are not UTF-8: ``strict``, an error; ``replace``, the replacement character; or
+        ``surrogateescape``, single surrogates, with which a caller finds the line.
 
     Returns
     -------
@@ -57,7 +58,7 @@ def read_text(path: Path, shown: str, lenient: bool = False) -> str:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise ScriptFileError(f"{shown}: this file is UTF-16, not UTF-8; save it as UTF-8")
     try:
-        return data.decode("utf-8", "replace" if lenient else "strict")
+        return data.decode("utf-8", undecoded)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise ScriptFileError(f"{shown}: line {line} is not UTF-8; save the file as UTF-8") from None

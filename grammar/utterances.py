@@ -92,13 +92,16 @@ class Utterance:
         return {"text": self.text, "at": self.at, **known, "speaker": self.speaker, "confidence": self.confidence}
 
 
-def read_utterances(path: str | Path) -> tuple[Utterance, ...]:
+def read_utterances(path: str | Path, refused: list[str] | None = None) -> tuple[Utterance, ...]:
     """Read a file of utterances.
 
     Parameters
     ----------
     path
         File with a JSON object on each line.
+    refused
+        List that gets the message about each line that is not an utterance, which is left out then; None to raise an
+        error about the first one.
 
     Returns
     -------
@@ -112,10 +115,13 @@ def read_utterances(path: str | Path) -> tuple[Utterance, ...]:
     ScriptFileError
         If the file cannot be read.
     """
-    return utterances_of_lines(read_text(Path(path), str(path)).split("\n"), str(path))
+    text = read_text(Path(path), str(path), undecoded="strict" if refused is None else "surrogateescape")
+    return utterances_of_lines(text.split("\n"), str(path), refused)
 
 
-def utterances_of_lines(lines: Iterable[str], file: str = "<utterances>") -> tuple[Utterance, ...]:
+def utterances_of_lines(
+    lines: Iterable[str], file: str = "<utterances>", refused: list[str] | None = None
+) -> tuple[Utterance, ...]:
     """Return the utterances of lines of JSON, in order of time.
 
     Parameters
@@ -124,6 +130,8 @@ def utterances_of_lines(lines: Iterable[str], file: str = "<utterances>") -> tup
         Lines; blank ones are skipped.
     file
         Name of their file in messages.
+    refused
+        As for :func:`read_utterances`.
 
     Returns
     -------
@@ -140,11 +148,17 @@ def utterances_of_lines(lines: Iterable[str], file: str = "<utterances>") -> tup
     >>> utterances_of_lines(['{"text": "a fork", "at": 3, "speaker": "anna"}'])[0].speaker
     'anna'
     """
-    found = [
-        _utterance(parse_json_line(line, file, number, UtteranceError, "is not a number"), f"{file}:{number}")
-        for number, line in enumerate(lines, 1)
-        if line.strip()
-    ]
+    found = []
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            data = parse_json_line(line, file, number, UtteranceError, "is not a number")
+            found.append(_utterance(data, f"{file}:{number}"))
+        except UtteranceError as error:
+            if refused is None:
+                raise
+            refused.append(str(error))
     return tuple(sorted(found, key=lambda one: one.at))
 
 

@@ -106,7 +106,7 @@ def parse_json_line(text: str, file: str, line: int, error: type[DeixisError], n
     Parameters
     ----------
     text
-        The line.
+        The line; single surrogates in it stand for bytes that are not UTF-8.
     file
         Name of the file, for messages.
     line
@@ -122,7 +122,7 @@ def parse_json_line(text: str, file: str, line: int, error: type[DeixisError], n
     Raises
     ------
     error
-        As :func:`parse_json` raises it, with the number of the line.
+        As :func:`parse_json` raises it, with the number of the line; also if the line is not UTF-8.
 
     Examples
     --------
@@ -131,6 +131,10 @@ def parse_json_line(text: str, file: str, line: int, error: type[DeixisError], n
         ...
     deixis.errors.DeixisError: t.jsonl:7:6: this is not valid JSON: a ':' is missing between the key and its value
     """
+    try:
+        text.encode()
+    except UnicodeEncodeError as wrong:
+        raise error(f"{file}:{line}:{wrong.start + 1}: the line is not UTF-8; save the file as UTF-8") from wrong
     try:
         return parse_json(text, f"{file}:{line}", error, no_number)
     except error as wrong:

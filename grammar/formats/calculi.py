@@ -141,7 +141,7 @@ def read_calculus(path: str | Path) -> CalculusText:
 
 def _lines(path: Path) -> list[_Line]:
     """Return the lines that are neither empty nor comments; comments may be in any encoding."""
-    text = read_text(path, str(path), lenient=True).removeprefix("\ufeff")
+    text = read_text(path, str(path), undecoded="replace").removeprefix("\ufeff")
     numbered = (_Line(str(path), number, line) for number, line in enumerate(text.splitlines(), start=1))
     return [line for line in numbered if line.text.strip() and not line.text.lstrip().startswith("#")]
 

@@ -32,7 +32,7 @@ class SkeletonFile:
     notes: tuple[str, ...]
 
 
-def read_skeletons(path: str | Path) -> SkeletonFile:
+def read_skeletons(path: str | Path, refused: list[str] | None = None) -> SkeletonFile:
     """Read a recording of skeletons.
 
     A joint whose coordinates are not finite counts as not seen, and a frame whose time is not after the one before, of
@@ -42,6 +42,9 @@ def read_skeletons(path: str | Path) -> SkeletonFile:
     ----------
     path
         The file.
+    refused
+        List that gets the message about each line that is not a skeleton, which is left out then; None to raise an
+        error about the first one.
 
     Returns
     -------
@@ -53,10 +56,13 @@ def read_skeletons(path: str | Path) -> SkeletonFile:
     PointingError
         If the file cannot be read, or a line is not a skeleton; with file and line.
     """
-    return skeletons_of_lines(read_lines(path, PointingError, MAX_LINE_CHARACTERS), str(path))
+    undecoded = "strict" if refused is None else "surrogateescape"
+    return skeletons_of_lines(read_lines(path, PointingError, MAX_LINE_CHARACTERS, undecoded), str(path), refused)
 
 
-def skeletons_of_lines(lines: Iterable[str], file: str = "<skeletons>") -> SkeletonFile:
+def skeletons_of_lines(
+    lines: Iterable[str], file: str = "<skeletons>", refused: list[str] | None = None
+) -> SkeletonFile:
     """Return the skeletons of lines of JSON, as :func:`read_skeletons` does.
 
     Parameters
@@ -65,6 +71,8 @@ def skeletons_of_lines(lines: Iterable[str], file: str = "<skeletons>") -> Skele
         Lines; blank ones are skipped.
     file
         Name of their file in messages.
+    refused
+        As for :func:`read_skeletons`.
 
     Returns
     -------
@@ -94,7 +102,13 @@ def skeletons_of_lines(lines: Iterable[str], file: str = "<skeletons>") -> Skele
             raise PointingError(f"{where}: more than {MAX_LINES:,} lines; split the file")
         if len(line) > MAX_LINE_CHARACTERS:
             raise PointingError(f"{where}: more than {MAX_LINE_CHARACTERS:,} characters in a line; a line is one frame")
-        skeleton, complete = _skeleton(parse_json_line(line, file, number, PointingError, no_number=None), where)
+        try:
+            skeleton, complete = _skeleton(parse_json_line(line, file, number, PointingError, no_number=None), where)
+        except PointingError as error:
+            if refused is None:
+                raise
+            refused.append(str(error))
+            continue
         if not complete:
             unseen.append(number)
         if skeleton.at <= last.get(skeleton.person, -math.inf):

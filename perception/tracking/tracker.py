@@ -55,6 +55,9 @@ BLIND_FOR = 1.5
 BLINK = 1.5
 """Minimum time in seconds between two frames at which anything may have happened in between."""
 
+STRANGE = "the table is not where it was; the frame is left out"
+"""Note about a frame that shows neither the table at its place nor something before it."""
+
 HAND_MEMORY = 0.5
 """Time in seconds after a hand was seen in which it may have moved several things at once."""
 
@@ -87,6 +90,7 @@ class Tracker:
         self._at: float | None = None
         self._motion: CameraMotion | None = None
         self._moved_at = self._placed_at = self._hand_at = -np.inf
+        self._strange_since: float | None = None  # since when frames have not shown the table at its place
         self._optics: Optics | None = None
         self._view: TableView | None = None
         self._table: Table | None = None
@@ -135,10 +139,14 @@ class Tracker:
         changes, is_placed = self._seen_from_here(image, at, self._table)
         if not is_placed and at - self._placed_at < BLIND_FOR:
             return replace(self._situation(at, number), busy=True)
-        if _camera_moved(changes):
-            self._table = None
-            self._things.leave(list(self._things))
-            return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
+        if not _camera_moved(changes):
+            self._strange_since = None
+        elif self._strange_since is None:
+            self._strange_since = at
+        if self._strange_since is not None:
+            if at - self._strange_since < settings.steady:  # one frame may be wrong
+                return replace(self._situation(at, number, notes=(STRANGE,)), busy=True)
+            return self._begin_elsewhere(cloud, at, number)
         table, things, view = self._table, self._things, self._view
         table.reference.remember(image, changes, at, settings.tolerance, table.deviation, settings.colour)
         hand = self._hands.see(image, changes, table.outline, view.back, things.resting, at)
@@ -267,6 +275,16 @@ class Tracker:
         self._view = table_view(image.optics, found.frame, image.depth.shape)
         self._table = bare_table(image, self._view, at, self.settings)
         return self._situation(at, number, self._lay_out(found, cloud, image, at, {}))
+
+    def _begin_elsewhere(self, cloud: PointCloud, at: float, number: int) -> Situation:
+        """Look for the table again: what was known about places does not hold for another place of the camera."""
+        went = tuple(self._things)
+        for thing in went:
+            thing.lost("gone")
+        self._table, self._strange_since = None, None
+        self._things.leave(went)
+        now, gone = self._begin(cloud, at, number), tuple(thing.report(at) for thing in went)
+        return replace(now, went=gone, notes=("the camera moved: the table is looked for again", *now.notes))
 
     def _begin_anew(self, cloud: PointCloud, image: FrameImage, changes: Changes, at: float, number: int) -> Situation:
         """Look at the whole table again: things that are not at their places are gone, and others are new."""

@@ -53,3 +53,13 @@ def test_the_shipped_lines_satisfy_the_schema() -> None:
 def test_a_wrong_line_is_named(line: str, message: str) -> None:
     with pytest.raises(UtteranceError, match="said.jsonl:1.*" + message):
         utterances_of_lines([line], "said.jsonl")
+
+
+def test_wrong_lines_are_left_out_and_named_if_asked(tmp_path: Path) -> None:
+    file, refused = tmp_path / "words.said.jsonl", list[str]()
+    file.write_bytes(b'{"text": "a", "at": 1}\n{"at": 2}\n\xff\n{"text": "b", "at": 0}\n')
+    assert [one.text for one in read_utterances(file, refused)] == ["b", "a"]
+    assert [message.removeprefix(str(file)) for message in refused] == [
+        ":2: 'text' is missing",
+        ":3:1: the line is not UTF-8; save the file as UTF-8",
+    ]

@@ -57,3 +57,13 @@ def test_a_wrong_line_is_named(text: str, message: str) -> None:
 def test_a_file_that_is_missing_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(PointingError, match="there is no such file"):
         read_skeletons(tmp_path / "none.jsonl")
+
+
+def test_wrong_lines_are_left_out_and_named_if_asked(tmp_path: Path) -> None:
+    file, refused = tmp_path / "people.skeleton.jsonl", list[str]()
+    file.write_bytes(f"{line(0)}\n[1]\n".encode() + b"\xff\n" + f"{line(1)}\n".encode())
+    assert [one.at for one in read_skeletons(file, refused).skeletons] == [0, 1]
+    assert [message.removeprefix(str(file)) for message in refused] == [
+        ":2: a line must be an object {…}, got a list",
+        ":3:1: the line is not UTF-8; save the file as UTF-8",
+    ]

@@ -180,8 +180,9 @@ class Senses(Module):
         """Process the rest of the story; typed words are heard between its events."""
         try:
             if self._story is None or self._events is None:
-                self._story = self.story()
-                self._events = self._story.events()
+                story = self.story()
+                writer.report(story.notes)
+                self._story, self._events = story, story.events()
             for event in self._events:
                 if stopped.is_set():
                     return
@@ -235,6 +236,13 @@ class _Writer:
         )  # number of late frames, its fluent, and since when
         self._frames = itertools.count(1)
         self._at = 0.0
+
+    def report(self, notes: Iterable[str]) -> None:
+        """Write notes about the files of the story."""
+        self._begin()
+        for note in notes:
+            self._note("files", note)
+        self.flush()
 
     def take(self, event: Event, dropped: int = 0) -> None:
         """Process one event; write a note about an event that cannot be used, and go on.
@@ -343,9 +351,9 @@ class _Writer:
     def _note(self, about: str, text: str) -> None:
         """Write what was noticed, once."""
         if text not in self._notes and len(self._notes) < MAX_NOTES:
+            added = self._add((about, NOTICED, printed_line(text)), self._at, Source(Origin.SEEN, "senses"))
             self._notes.add(text)
-            source = Source(Origin.SEEN, "senses")
-            self._outbox.add(self._add((about, NOTICED, printed_line(text)), self._at, source))
+            self._outbox.add(added)
 
     # ---- seeing
 

@@ -103,7 +103,7 @@ class StoryTruth:
 class Story:
     """Events in the order of their times, which :meth:`events` yields one by one.
 
-    ``truth`` is that of a simulated story.
+    ``truth`` is that of a simulated story, and ``notes`` are the messages about lines of its files that are left out.
     """
 
     frames: Iterable[Frame]
@@ -111,6 +111,7 @@ class Story:
     skeletons: tuple[Skeleton, ...] = ()
     truth: StoryTruth | None = None
     live: LatestFrames | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def dropped(self) -> int:
@@ -225,8 +226,8 @@ class StorySettings:
             If there is no such folder, or it has no clouds.
         ModuleError
             If there is no such camera driver.
-        UtteranceError, PointingError
-            If a file of words or skeletons has an error.
+        UtteranceError, ScriptFileError, PointingError
+            If ``words`` has a line that is not an utterance, or a file of words or skeletons cannot be read.
         SimulationError
             If no table can be laid as the script says, or there is no such path of the camera.
         SettingError
@@ -307,24 +308,27 @@ def recorded_story(folder: str | Path, intrinsics: str | Path | None = None, gro
     Returns
     -------
     Story
-        The story. Its clouds are read one by one.
+        The story. Its clouds are read one by one. A line of words or skeletons that is invalid is left out, and a note
+        says so: a person who speaks cannot mend what a recogniser wrote.
 
     Raises
     ------
     CloudError
         If there is no such folder.
-    UtteranceError, PointingError
-        If a file of words or skeletons has an error.
+    ScriptFileError, PointingError
+        If a file of words or skeletons cannot be read.
     """
     from deixis.grammar.utterances import read_utterances
-    from deixis.perception.formats.skeletons import read_skeletons
+    from deixis.perception.formats.skeletons import SkeletonFile, read_skeletons
     from deixis.perception.tracking.frames.stream import FolderSource
 
     place = Path(folder)
     source = FolderSource(place, grows=grows, intrinsics=intrinsics)
-    words = read_utterances(place / WORDS) if (place / WORDS).exists() else ()
-    skeletons = read_skeletons(place / PEOPLE).skeletons if (place / PEOPLE).exists() else ()
-    return Story(source.frames(), tuple(words), tuple(skeletons))
+    refused: list[str] = []
+    words = read_utterances(place / WORDS, refused) if (place / WORDS).exists() else ()
+    people = read_skeletons(place / PEOPLE, refused) if (place / PEOPLE).exists() else SkeletonFile((), ())
+    notes = [f"{message}; the line is left out" for message in refused] + list(people.notes)
+    return Story(source.frames(), words, people.skeletons, notes=tuple(notes))
 
 
 def simulated_story(script: Script, seed: int = 0, rate: float = RATE) -> Story:

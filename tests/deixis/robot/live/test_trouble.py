@@ -19,6 +19,7 @@ from deixis.memory.episodes.fluents.changes import Add, Change, Finish
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.tracking.frames.frame import Frame
 from deixis.reasoning.temporal.bounds import Bounds
@@ -28,7 +29,7 @@ from deixis.robot.live.learner import DONE, NOT_FOUND, NOT_SEEN, SAYS, Learner
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.run import live_robot
 from deixis.robot.live.senses import DROPPED, ENDED, NOTICED, SAID, TABLE, Senses
-from deixis.robot.live.story import Event, Story, StorySettings
+from deixis.robot.live.story import PEOPLE, WORDS, Event, Story, StorySettings
 from deixis.robot.modules import Module, ModuleBoard, run_until_stopped
 from deixis.robot.robot import Robot
 
@@ -100,6 +101,21 @@ def test_the_robot_goes_on_after_events_that_cannot_be_used(tmp_path: Path) -> N
     assert "a.pcd: damaged; the frame is left out" in notes
     assert any("could not be used: a time of" in str(note) for note in notes)
     assert len(notes) == len(set(notes)) < 8
+
+
+def test_invalid_lines_of_a_story_are_noted_and_left_out(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "0.pcd", PointCloud(np.zeros((4, 3), np.float32)))
+    words = b'{"text": "one", "at": 0}\n{"text": "two", "at"\n{"text": "\xff", "at": 1}\n{"text": "three", "at": 2}\n'
+    (tmp_path / WORDS).write_bytes(words)
+    (tmp_path / PEOPLE).write_text('{"at": 0, "joints": {}}\n{"at": 1}\n', encoding="utf-8")
+    senses = Senses({"source": str(tmp_path)}, str(tmp_path))
+    with Blackboard.transient() as board:
+        assert take_in(senses, board, failures=2)[0].count("no space left on device") == 1
+        assert noted(board, SAID) == ["one", "three"]
+        notes = [str(note) for note in noted(board, NOTICED) if str(note).startswith(str(tmp_path))]
+    places = [note.removeprefix(f"{tmp_path}/").split(": ")[0] for note in notes if "the line is left out" in note]
+    assert places == [f"{WORDS}:2:21", f"{WORDS}:3:11", f"{PEOPLE}:2"]
+    assert not any("\n" in note for note in notes)
 
 
 def test_a_full_disk_is_reported_once_and_nothing_is_lost(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from deixis.perception.tracking.frames.image import FrameImage, Optics, table_vi
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import Situation
 from deixis.perception.tracking.table.reference import Reference
-from deixis.perception.tracking.tracker import Tracker
+from deixis.perception.tracking.tracker import STRANGE, Tracker
 
 pytest.importorskip("open3d")
 
@@ -78,8 +78,20 @@ def test_moved_thing_is_followed_by_a_swaying_camera() -> None:
 def test_jump_of_the_camera_is_noted() -> None:
     frames = [next(film([PLATE, MUG], [Rest(0.1)], camera=camera).frames(scale=0.35)) for camera in jumping()]
     with Tracker(TrackingSettings(stride=1)) as tracker:
-        tracker.update(frames[0].cloud, 0.0)
-        assert any("the camera moved" in note for note in tracker.update(frames[1].cloud, 0.1).notes)
+        before = tracker.update(frames[0].cloud, 0.0).things
+        first, later = (tracker.update(frames[1].cloud, at) for at in (0.1, 0.6))
+        assert first.notes == (STRANGE,) and first.busy and not first.went and len(first.things) == len(before)
+        assert any("the camera moved" in note for note in later.notes)
+        assert [thing.id for thing in later.went] == [thing.id for thing in before]
+        assert not {thing.id for thing in later.things} & {thing.id for thing in before}
+
+
+def test_single_frame_of_another_place_changes_nothing() -> None:
+    here, there = (next(film([PLATE, MUG], [Rest(0.1)], camera=camera).frames(scale=0.35)) for camera in jumping())
+    with Tracker(TrackingSettings(stride=1)) as tracker:
+        seen = [tracker.update(frame.cloud, at) for at, frame in ((0.0, here), (0.5, there), (1.0, here), (1.5, there))]
+        assert [now.notes for now in seen] == [(), (STRANGE,), (), (STRANGE,)]
+        assert len({tuple(thing.id for thing in now.things) for now in seen}) == 1
 
 
 def test_nothing_is_concluded_while_a_hand_hides_the_view() -> None:

@@ -53,3 +53,25 @@ def test_hidden_thing_moves_after_a_hand_and_not_below_the_table(hand_at: float,
     seen = look.seen(1.0, hand_at)
     follow(look.things, look.table, seen, Hands(), 0.1, Workers(1), HALF)
     assert mug.active == moves
+
+
+@pytest.mark.parametrize("is_there", [False, True])
+def test_thing_moves_with_the_hand_if_the_seen_part_of_its_place_is_empty(is_there: bool) -> None:
+    look = first_look([PLATE, MUG])
+    mug = list(look.things)[1]
+    if not is_there:
+        mug.pose = mug.pose.copy()
+        mug.pose[:2, 3] = 0.0, -0.15  # nothing is there
+        mug._rest = mug.pose
+        mug.rest_again()
+    pixels, _ = look.view.pixels(mug.placed_points)
+    columns = pixels % look.image.depth.shape[1]
+    hidden = pixels[columns > np.quantile(columns, 0.2)]
+    look.image.depth.ravel()[hidden] -= 0.3
+    mug.there_at = 0.4
+    hands, grip = Hands(), mug.pose[:3, 3] + (0.0, 0.0, 0.05)
+    hands._past.extend([(0.3, grip[None] + 1.0), (0.4, grip[None]), (1.0, grip[None] + (0.01, 0.02, 0.1))])
+    before = mug.pose[:3, 3].copy()
+    follow(look.things, look.table, look.seen(1.0, 1.0), hands, 0.1, Workers(1), HALF)
+    assert mug.active == mug.in_hand == (not is_there)
+    assert mug.pose[:3, 3] - before == pytest.approx([0.0, 0.0, 0.0] if is_there else [0.01, 0.02, 0.1])

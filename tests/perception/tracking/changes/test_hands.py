@@ -58,6 +58,18 @@ def test_new_hand_carries_nothing() -> None:
     assert not hands.see(image, changes_at(np.zeros_like(arm)), outline, BACK).any()
 
 
+def test_way_of_a_hand_since_a_time_begins_where_the_thing_was() -> None:
+    hands, outline, tips = Hands(), Outline(), []
+    for at, rows in enumerate((15, 20, 25, 30)):
+        image, arm = image_of_arm(rows)
+        hands.see(image, changes_at(arm), outline, BACK, at=float(at))
+        tips.append(image.places(np.array([(ROWS - rows + 3) * COLUMNS + 40]), BACK)[0])
+    way = hands.moved_since(1.0, tips[1], 0.05)
+    assert way is not None and np.allclose(way, [0, 10 * 0.8 / 80, 0], atol=0.004)
+    assert hands.moved_since(1.0, tips[1] + np.array([0.5, 0, 0]), 0.05) is None, "it was out of the hand's reach"
+    assert hands.moved_since(4.0, tips[1], 0.05) is None, "no hand was seen since"
+
+
 def test_low_thing_that_comes_into_view_is_not_a_hand() -> None:
     for height, is_hand in ((0.01, False), (0.2, True)):
         image, surface = image_of_arm(20, height)

@@ -51,6 +51,26 @@ def test_pose_at_rest_is_that_of_all_pixels_of_the_thing() -> None:
     assert napkin.last_rest is napkin.pose
 
 
+def test_rectangle_whose_box_fits_across_is_turned() -> None:
+    depth, colour = np.ones(SHAPE, np.float32), np.broadcast_to(WOOD, (*SHAPE, 3)).astype(np.float32)
+    depth[NAPKIN], colour[NAPKIN] = 0.99, RED
+    rows, columns = np.indices(SHAPE)
+    rays = np.stack([(columns - 79.5) / 200, (rows - 59.5) / 200, np.ones(SHAPE)], axis=-1)
+    image = FrameImage((rays * depth[..., None]).astype(np.float32), depth, colour, OPTICS)
+    seen = image.places(np.flatnonzero(depth < 1), BACK)
+    middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+    sides = np.append(np.ptp(seen, axis=0)[[1, 0]], 0.01)  # 20 cm by 30 cm; the frame shows 30 cm by 20 cm
+    across = turned_axes(np.pi / 2).T
+    cloud = PointCloud(((seen - middle) @ across).astype(np.float32), np.tile(np.array(RED, np.uint8), (len(seen), 1)))
+    pose = np.eye(4)
+    pose[:3, 3] = middle + np.array([0.02, 0.01, 0.0])
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, tuple(sides.tolist()))
+    napkin = Pipeline("t1", 1, cloud, sides / 2, box, pose, 0.0, TrackingSettings())
+    napkin.align(image, table_view(OPTICS, BACK, SHAPE), np.zeros(SHAPE, np.bool_), seen, 0.0015)
+    assert napkin.pose[:2, 3] == pytest.approx(middle[:2], abs=0.004)
+    assert abs(napkin.pose[0, 0]) < 0.05 and napkin.contains(seen, 0.005).all()
+
+
 def mug_and_image(handle: float) -> tuple[Pipeline, FrameImage, np.ndarray]:
     """Return a mug with a handle along x, a frame in which it has another direction, and the points of the frame."""
     rng = np.random.default_rng(2)
