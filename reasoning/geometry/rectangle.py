@@ -154,7 +154,7 @@ class SceneRelations:
         if missing.any() or len(graph) != n * (n - 1):
             where = np.argwhere(missing)
             pair = f" ({graph.nodes[where[0][0]]}, {graph.nodes[where[0][1]]})" if len(where) else ""
-            raise GraphError(f"a scene's graph needs one exact relation for every ordered pair{pair}")
+            raise GraphError(f"the graph of a scene must have exactly one exact relation for each ordered pair{pair}")
         return cls(graph.vocabulary, graph.nodes, names, graph.boxes, graph.kinds)
 
     def index(self, node: str) -> int:
@@ -331,10 +331,10 @@ def require_boxes(boxes: NDArray[np.float64]) -> None:
         raise GraphError(f"boxes must have shape (n, 2, 2) or (n, 2, 3), got {boxes.shape}")
     if not np.isfinite(boxes).all():
         bad = int(np.flatnonzero(~np.isfinite(boxes).all(axis=(1, 2)))[0])
-        raise GraphError(f"box {bad} has a corner that is not finite")
+        raise GraphError(f"the corners of box {bad} must be finite, got {boxes[bad].tolist()}")
     if (boxes[:, 1] < boxes[:, 0]).any():
         bad = int(np.flatnonzero((boxes[:, 1] < boxes[:, 0]).any(axis=1))[0])
-        raise GraphError(f"box {bad} has a greatest corner below its least corner")
+        raise GraphError(f"the lower corner of box {bad} must not be above the upper one, got {boxes[bad].tolist()}")
 
 
 def cross_relations(
