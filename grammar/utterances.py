@@ -65,13 +65,15 @@ class Utterance:
 
     def __post_init__(self) -> None:
         if not isinstance(self.text, str) or not self.text.strip() or len(self.text) > MAX_CHARACTERS:
-            raise UtteranceError(f"'text' must have 1 to {MAX_CHARACTERS:,} characters that are not all blank")
+            raise UtteranceError(
+                f"'text' must have 1 to {MAX_CHARACTERS:,} characters that are not all blank, got {self.text!r:.40}"
+            )
         if not math.isfinite(self.at) or not math.isfinite(self.end):
             raise UtteranceError(f"'at' and 'until' must be finite numbers of seconds, got {self.at} and {self.until}")
         if self.end < self.at:
             raise UtteranceError(f"'until' must not be before 'at', got {self.until:g} and {self.at:g}")
         if not self.speaker.strip():
-            raise UtteranceError("'speaker' must be a name that is not blank")
+            raise UtteranceError(f"'speaker' must be a name that is not blank, got {self.speaker!r}")
         if not 0 <= self.confidence <= 1:
             raise UtteranceError(f"'confidence' must be from 0 to 1, got {self.confidence:g}")
 

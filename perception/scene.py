@@ -1017,18 +1017,22 @@ def _corners(
             raise SceneError(f"`min` and `max` must have the same shape, got {low.shape} and {high.shape}")
         return low, high, []
     if centre is None or size is None or lower is not None or upper is not None:
-        raise SceneError("give boxes by `min` and `max`, or by `centre` and `size`, and `yaw` with these only")
+        raise SceneError(
+            "boxes must be given by `min` and `max`, or by `centre` and `size`, with `yaw` if they are turned"
+        )
     middle, sides = _rows(centre, "centre"), _rows(size, "size")
     if middle.shape != sides.shape:
         raise SceneError(f"`centre` and `size` must have the same shape, got {middle.shape} and {sides.shape}")
     if (sides < 0).any():
-        raise SceneError("`size` must be 0 or more on each axis")
+        raise SceneError(f"`size` must be at least 0 on each axis, got {sides.min():g}")
     if yaw is None:
         return middle - sides / 2, middle + sides / 2, []
     try:
         angles = np.broadcast_to(np.asarray(yaw, dtype=np.float64), len(middle))
     except (ValueError, TypeError, OverflowError) as error:
-        raise SceneError(f"`yaw` must be one angle, or one for each of the {len(middle)} boxes, in radians") from error
+        raise SceneError(
+            f"`yaw` must be one angle, or {len(middle)}, one for each box, in radians, got {yaw!r:.40}"
+        ) from error
     cosine, sine = np.abs(np.cos(angles)), np.abs(np.sin(angles))
     half = sides / 2
     half[:, 0], half[:, 1] = cosine * half[:, 0] + sine * half[:, 1], sine * half[:, 0] + cosine * half[:, 1]
@@ -1043,7 +1047,9 @@ def _rows(values: ArrayLike, what: str) -> NDArray[np.float64]:
     try:
         rows = np.array(values, dtype=np.float64)
     except (ValueError, TypeError, OverflowError) as error:
-        raise SceneError(f"`{what}` must be an array of numbers of shape (n, 2) or (n, 3)") from error
+        raise SceneError(
+            f"`{what}` must be an array of numbers of shape (n, 2) or (n, 3), got {values!r:.40}"
+        ) from error
     if rows.size == 0:
         return rows.reshape(0, 2)
     if rows.ndim != 2 or rows.shape[1] not in (2, 3):
@@ -1069,9 +1075,12 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
         raise SceneError(f"{file}: object {thing.id!a}: the id or the label contains a control character; remove it")
     where = f"{file}: object '{thing.id}'"
     if len(thing.minimum) != len(thing.maximum) or len(thing.minimum) not in (2, 3):
-        raise SceneError(f"{where}: 'min' and 'max' must both have 2 coordinates, or both 3")
+        raise SceneError(
+            f"{where}: 'min' and 'max' must both have 2 coordinates, or both 3, "
+            f"got {len(thing.minimum)} and {len(thing.maximum)}"
+        )
     if not np.isfinite([*thing.minimum, *thing.maximum]).all():
-        raise SceneError(f"{where}: a coordinate is not finite")
+        raise SceneError(f"{where}: the coordinates must be finite, got {thing.minimum} and {thing.maximum}")
     if max(map(abs, (*thing.minimum, *thing.maximum))) > MAX_COORDINATE:
         raise SceneError(f"{where}: a coordinate is beyond {MAX_COORDINATE:g}; check the unit")
     for axis, low, high in zip("xyz", thing.minimum, thing.maximum, strict=False):
@@ -1093,9 +1102,13 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
         raise SceneError(f"{where}: the confidence must be from 0 to 1, got {thing.confidence:g}")
     shares = [share for _, share in thing.candidates]
     if not all(share >= 0 for share in shares) or not sum(shares) <= 1 + CANDIDATE_ROUNDING:
-        raise SceneError(f"{where}: the probabilities of 'candidates' must be at least 0, and their sum at most 1")
+        raise SceneError(
+            f"{where}: the probabilities of 'candidates' must be at least 0, and their sum at most 1, got {shares}"
+        )
     if len({name for name, _ in thing.candidates}) < len(thing.candidates):
-        raise SceneError(f"{where}: 'candidates' must name each category once")
+        raise SceneError(
+            f"{where}: 'candidates' must name each category once, got {[name for name, _ in thing.candidates]}"
+        )
     if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
         raise SceneError(f"{where}: a colour must be red, green and blue, each from 0 to 255, got {thing.colour}")
     measured = None if thing.heading is None else thing.heading.direction

@@ -152,7 +152,9 @@ def _relation(
         a, b = (_known(entry[end], f"{where}.{end}", fluents, "fluent") for end in "ab")
         names = _list(entry["allen"], f"{where}.allen")
         if not names:
-            raise FluentFileError(f'{where}.allen must have at least one relation, such as "before"')
+            raise FluentFileError(
+                f'{where}.allen must have at least one relation, got none; write one, such as "before"'
+            )
         relations = [_ALLEN[_known(n, f"{where}.allen[{k}]", _ALLEN, "relation")] for k, n in enumerate(names)]
         return AllenStatement(a, allen_mask(relations), b, where)
     entry = _object(data, where, ("from", "to", "bounds"), ("from", "to", "bounds"))
@@ -190,7 +192,9 @@ def _number(data: Any, where: str, scale: float) -> float:
     if isinstance(data, bool) or not isinstance(data, int | float):
         raise FluentFileError(f"{where} must be a number or null, got {json_type(data)}")
     if not abs(data) <= MAX_SECONDS / scale:
-        raise FluentFileError(f"{where} must be at most {MAX_SECONDS:g} s from zero; check the unit and the origin")
+        raise FluentFileError(
+            f"{where} must be at most {MAX_SECONDS:g} s from zero, got {data * scale:g} s; check the unit"
+        )
     return data * scale
 
 

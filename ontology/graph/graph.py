@@ -70,16 +70,20 @@ class RelationGraph:
         index = {name: i for i, name in enumerate(self.nodes)}
         if len(index) != len(self.nodes):
             twice = next(name for i, name in enumerate(self.nodes) if index[name] != i)
-            raise GraphError(f"the object '{twice}' is in the graph twice")
+            raise GraphError(f"`nodes` must differ from one another, got '{twice}' twice")
         object.__setattr__(self, "_index", index)
         m = len(self.subjects)
         arrays = (self.objects, self.relation_sets, self.positive, self.optional, self.weights)
         if any(len(array) != m for array in arrays) or len(self.sources) not in (0, m):
-            raise GraphError("the edge arrays must all have the same length")
+            lengths = sorted({m, len(self.sources), *(len(array) for array in arrays)})
+            raise GraphError(f"the edge arrays must have one length, got {lengths}")
         if len(self.kinds) not in (0, len(self.nodes)) or len(self.colours) not in (0, len(self.nodes)):
-            raise GraphError("`kinds` and `colours` must have one entry per node, or be empty")
+            raise GraphError(
+                f"`kinds` and `colours` must have {len(self.nodes)} entries, one per node, or none, "
+                f"got {len(self.kinds)} and {len(self.colours)}"
+            )
         if self.boxes is not None and len(self.boxes) != len(self.nodes):
-            raise GraphError("`boxes` must have one box per node, or be None")
+            raise GraphError(f"`boxes` must have {len(self.nodes)} boxes, one per node, got {len(self.boxes)}")
 
     @property
     def net_weights(self) -> NDArray[np.float64]:

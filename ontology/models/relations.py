@@ -44,15 +44,18 @@ class Term:
     def __post_init__(self) -> None:
         where = f"the term '{self.feature}'"
         if len(self.knots) != len(self.values) or len(self.knots) < 2:
-            raise OntologyError(f"{where}: there must be one value per knot, and at least two knots")
+            raise OntologyError(
+                f"{where}: there must be at least two knots, and one value per knot, "
+                f"got {len(self.knots)} knots and {len(self.values)} values"
+            )
         if not all(map(math.isfinite, (*self.knots, *self.values))):
-            raise OntologyError(f"{where}: knots and values must be finite")
+            raise OntologyError(f"{where}: knots and values must be finite, got {self.knots} and {self.values}")
         if any(b <= a for a, b in zip(self.knots, self.knots[1:], strict=False)):
-            raise OntologyError(f"{where}: knots must increase")
+            raise OntologyError(f"{where}: knots must increase, got {self.knots}")
         if max(self.values) > 1e-9:
             raise OntologyError(f"{where}: a log degree must be at most 0, got {max(self.values):g}")
         if any((b - a) * self.trend < -1e-9 for a, b in zip(self.values, self.values[1:], strict=False)):
-            raise OntologyError(f"{where}: its values must be {self.trend.name.lower()}")
+            raise OntologyError(f"{where}: its values must be {self.trend.name.lower()}, got {self.values}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +88,10 @@ class RelationModel:
 
     def __post_init__(self) -> None:
         if not 0 < self.outliers < 1 or not 0 < self.chance <= 1:
-            raise OntologyError(f"the model '{self.name}': outliers and chance must lie between 0 and 1")
+            raise OntologyError(
+                f"the model '{self.name}': outliers and chance must lie between 0 and 1, "
+                f"got {self.outliers:g} and {self.chance:g}"
+            )
         if len({term.feature for term in self.terms}) != len(self.terms):
             raise OntologyError(f"the model '{self.name}' has two terms for one feature")
 
@@ -185,7 +191,9 @@ class RelationModels:
         try:
             return self.models[name]
         except KeyError:
-            raise UnknownTermError(f"there is no graded model '{name}'") from None
+            raise UnknownTermError(
+                f"there is no graded model '{name}'; the models are {', '.join(self.models)}"
+            ) from None
 
     def of(self, relation: Relation) -> RelationModel:
         """Return the model of the word of a relation.

@@ -40,7 +40,10 @@ class Mesh:
             self.part.shape != (len(self.faces),)
             or (self.part.size and not 0 <= self.part.min() <= self.part.max() < len(self.names))
         ):
-            raise CloudError("`part` must hold the index of a name for each face")
+            raise CloudError(
+                f"`part` must hold an index from 0 to {len(self.names) - 1} for each of {len(self.faces)} faces, "
+                f"got shape {self.part.shape}"
+            )
 
     def part_named(self, name: str) -> Mesh:
         """Return the faces of one part with their vertices only.

@@ -215,10 +215,10 @@ def _label(category: Any, labels: Mapping[_Id, str], where: str) -> str | None:
 
 def _bbox(data: Any, where: str) -> list[tuple[float, float]]:
     if not isinstance(data, list) or len(data) != 4:
-        raise SceneError(f"{where} must have 4 numbers: x, y, width and height")
+        raise SceneError(f"{where} must be 4 numbers, x, y, width and height, got {shown(data)}")
     x, y, width, height = (number(value, where) for value in data)
     if width < 0 or height < 0:
-        raise SceneError(f"{where}: width and height must be at least 0")
+        raise SceneError(f"{where}: width and height must be at least 0, got {width:g} and {height:g}")
     return [(x, y), (x + width, y + height)]
 
 
@@ -229,12 +229,12 @@ def _polygons(data: Any, where: str) -> list[tuple[float, float]]:
     if isinstance(data, Mapping):
         raise SceneError(f"{where}: run-length encoded 'segmentation' cannot be read; add a 'bbox'")
     if not isinstance(data, list) or not data:
-        raise SceneError(f"{where}: 'segmentation' must be a list of at least one polygon")
+        raise SceneError(f"{where}: 'segmentation' must be a list of at least one polygon, got {shown(data)}")
     corners: list[tuple[float, float]] = []
     for part, flat in enumerate(data):
         place = f"{where}: 'segmentation'[{part}]"
         if not isinstance(flat, list) or len(flat) < 6 or len(flat) % 2:
-            raise SceneError(f"{place} must be a list x1, y1, x2, y2, … of at least 3 corners")
+            raise SceneError(f"{place} must be a list x1, y1, x2, y2, … of at least 3 corners, got {shown(flat)}")
         values = [number(value, place) for value in flat]
         corners += zip(values[::2], values[1::2], strict=True)
     return corners

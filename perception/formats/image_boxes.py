@@ -81,7 +81,7 @@ def box_around(
         raise SceneError(f"{where}: a coordinate is not finite")
     if box.left >= box.right or box.top >= box.bottom:
         side = "width" if box.left >= box.right else "height"
-        raise SceneError(f"{where}: the outline must have a {side} above 0")
+        raise SceneError(f"{where}: the {side} of the outline must be above 0, got 0")
     return box
 
 

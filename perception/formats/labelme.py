@@ -128,7 +128,7 @@ def _box(entry: Mapping[str, Any], where: str) -> ImageBox:
 
 def _point(data: Any, where: str) -> _Point:
     if not isinstance(data, list) or len(data) != 2:
-        raise SceneError(f"{where} must have 2 numbers: x and y")
+        raise SceneError(f"{where} must be 2 numbers, x and y, got {shown(data)}")
     return number(data[0], where), number(data[1], where)
 
 

@@ -259,7 +259,7 @@ def _colour(data: Any, where: str) -> Rgb:
     if isinstance(data, list | tuple):
         parts = [number(part, where) for part in data]
         if len(parts) != 3 or not all(0 <= part <= 255 for part in parts):
-            raise SceneError(f"{where} as a list must be red, green and blue, each from 0 to 255")
+            raise SceneError(f"{where} as a list must be red, green and blue, each from 0 to 255, got {list(data)}")
         return round(parts[0]), round(parts[1]), round(parts[2])
     if not isinstance(data, str):
         raise SceneError(f"{where} must be a word such as red, #rrggbb, or [red, green, blue], got {json_type(data)}")

@@ -153,7 +153,7 @@ class InstanceCategory:
             If the view is known already, or its descriptors have another length.
         """
         if key in self.views.ids or key in self.empty:
-            raise RecognitionError(f"category '{self.name}' has a view '{key}' already")
+            raise RecognitionError(f"category '{self.name}' already has a view '{key}'; give the new one another id")
         things = self.things if thing is None else {**self.things, key: thing}
         if not len(descriptors):
             return replace(self, empty=(*self.empty, key), things=things)

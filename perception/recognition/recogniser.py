@@ -277,7 +277,9 @@ class Recogniser:
         """
         places = [i for i, category in enumerate(self.categories) if category.name != name]
         if len(places) == len(self.categories):
-            raise RecognitionError(f"unknown category '{name}'")
+            raise RecognitionError(
+                f"unknown category '{name}'; the categories are {', '.join(one.name for one in self.categories)}"
+            )
         return replace(
             self,
             categories=tuple(self.categories[i] for i in places),

@@ -125,6 +125,41 @@ class SceneRelations:
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     poses: Poses | None = None  # of the n objects; None: axes along the sides of the boxes, no fronts
 
+<<<<<<< HEAD
+=======
+    @classmethod
+    def from_graph(cls, graph: RelationGraph) -> SceneRelations:
+        """Read the relations of a complete relation graph.
+
+        Parameters
+        ----------
+        graph
+            The graph.
+
+        Returns
+        -------
+        SceneRelations
+            The relations as matrices.
+
+        Raises
+        ------
+        GraphError
+            If an ordered pair has no exact relation, or more than one.
+        """
+        n = len(graph.nodes)
+        exact = sum(relation.bit for relation in graph.vocabulary.of_reading(Reading.EXACT))
+        sets = graph.relation_sets
+        single = (np.bitwise_count(sets) == 1) & ((sets & ~np.int64(exact)) == 0) & graph.positive
+        names = np.full((n, n), -1, dtype=np.int8)
+        names[graph.subjects[single], graph.objects[single]] = np.round(np.log2(sets[single])).astype(np.int8)
+        missing = (names < 0) & ~np.eye(n, dtype=bool)
+        if missing.any() or len(graph) != n * (n - 1):
+            where = np.argwhere(missing)
+            pair = f" ({graph.nodes[where[0][0]]}, {graph.nodes[where[0][1]]})" if len(where) else ""
+            raise GraphError(f"the graph of a scene must have exactly one exact relation for each ordered pair{pair}")
+        return cls(graph.vocabulary, graph.nodes, names, graph.boxes, graph.kinds)
+
+>>>>>>> u21/u21
     def index(self, node: str) -> int:
         """Return the position of an object.
 
@@ -296,10 +331,10 @@ def require_boxes(boxes: NDArray[np.float64]) -> None:
         raise GraphError(f"boxes must have shape (n, 2, 2) or (n, 2, 3), got {boxes.shape}")
     if not np.isfinite(boxes).all():
         bad = int(np.flatnonzero(~np.isfinite(boxes).all(axis=(1, 2)))[0])
-        raise GraphError(f"box {bad} has a corner that is not finite")
+        raise GraphError(f"the corners of box {bad} must be finite, got {boxes[bad].tolist()}")
     if (boxes[:, 1] < boxes[:, 0]).any():
         bad = int(np.flatnonzero((boxes[:, 1] < boxes[:, 0]).any(axis=1))[0])
-        raise GraphError(f"box {bad} has a greatest corner below its least corner")
+        raise GraphError(f"the lower corner of box {bad} must not be above the upper one, got {boxes[bad].tolist()}")
 
 
 def cross_relations(

@@ -45,7 +45,7 @@ def read_text(file: str | Path, error: type[DeixisError] = DeixisError, most: in
     with _opened(file, error) as text:
         found = text.read(most + 1)
     if len(found) > most:
-        raise error(f"{file}: the file must have at most {most:,} characters; split it")
+        raise error(f"{file}: the file must have at most {most:,} characters, got more; split it")
     return found
 
 
@@ -84,7 +84,7 @@ def read_lines(
         while line := text.readline(most + 1):
             number += 1
             if len(line) > most:
-                raise error(f"{file}:{number}: a line must have at most {most:,} characters; split it")
+                raise error(f"{file}:{number}: a line must have at most {most:,} characters, got more; split it")
             yield line
 
 
@@ -99,7 +99,7 @@ def require_path_or_text(function: str, path: object, text: object) -> None:
         The arguments; None for what is not given.
     """
     if (path is None) == (text is None):
-        raise TypeError(f"`{function}` must be given either a path or `text`, not both or neither")
+        raise TypeError(f"`{function}` must be given a path or `text`, got {'neither' if path is None else 'both'}")
 
 
 def is_folder(path: str | Path) -> bool:

@@ -56,7 +56,7 @@ def test_texts_and_lines_have_a_largest_length(tmp_path: Path) -> None:
     file = tmp_path / "long.txt"
     file.write_text("\ufeffab\ncdef\n", encoding="utf-8")
     assert read_text(file, most=8) == "ab\ncdef\n" and list(read_lines(file, most=5)) == ["ab\n", "cdef\n"]
-    with pytest.raises(OntologyError, match="at most 7 characters; split it"):
+    with pytest.raises(OntologyError, match="at most 7 characters, got more; split it"):
         read_text(file, OntologyError, most=7)
     with pytest.raises(OntologyError, match=r"long.txt:2: a line must have at most 4 characters"):
         list(read_lines(file, OntologyError, most=4))

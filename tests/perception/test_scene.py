@@ -112,8 +112,8 @@ def test_scenes_from_different_files_may_be_equal() -> None:
 @pytest.mark.parametrize(
     ("minimum", "maximum", "message"),
     [
-        ((0.0, math.nan), (1.0, 1.0), "not finite"),
-        ((0.0, 0.0), (math.inf, 1.0), "not finite"),
+        ((0.0, math.nan), (1.0, 1.0), "must be finite"),
+        ((0.0, 0.0), (math.inf, 1.0), "must be finite"),
         ((0.0,), (1.0,), "2 coordinates, or both 3"),
         ((0.0, 0.0), (1.0, 1.0, 1.0), "2 coordinates, or both 3"),
         ((0.0, 2.0), (1.0, 1.0), "on y its min 2 is above its max 1"),

@@ -46,14 +46,14 @@ def test_boxes_around_turned_ones_touch_all_their_corners(yaw: float, length: fl
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"min": [[0, 0]]}, "give boxes by `min` and `max`, or by `centre` and `size`"),
-        ({"min": [[0, 0]], "max": [[1, 1]], "yaw": 0.0}, "give boxes by"),
+        ({"min": [[0, 0]]}, "boxes must be given by `min` and `max`, or by `centre` and `size`"),
+        ({"min": [[0, 0]], "max": [[1, 1]], "yaw": 0.0}, "boxes must be given by"),
         ({"min": [0, 0], "max": [1, 1]}, r"`min` must have shape \(n, 2\) or \(n, 3\), got \(2,\)"),
         ({"min": [[0, 0]], "max": [[1, 1, 1]]}, "must have the same shape"),
         ({"min": [["a", 0]], "max": [[1, 1]]}, "`min` must be an array of numbers"),
-        ({"min": [[0, np.nan]], "max": [[1, 1]]}, "not finite"),
+        ({"min": [[0, np.nan]], "max": [[1, 1]]}, "must be finite"),
         ({"min": [[2, 0]], "max": [[1, 1]]}, "above its max"),
-        ({"centre": [[0, 0]], "size": [[-1, 1]]}, "`size` must be 0 or more"),
+        ({"centre": [[0, 0]], "size": [[-1, 1]]}, "`size` must be at least 0 on each axis, got -1"),
         ({"centre": [[0, 0]], "size": [[1, 1]], "yaw": [0.1, 0.2]}, "`yaw` must be one angle"),
         ({"min": [[0, 0]], "max": [[1, 1]], "ids": ["a", "b"]}, "`ids` must have one entry for each of the 1 boxes"),
         ({"min": [[0, 0]] * 2, "max": [[1, 1]] * 2, "ids": [1, "1"]}, "used twice"),

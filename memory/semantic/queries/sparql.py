@@ -218,7 +218,7 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
         raise text.error(half, "this is not a character; write the query in UTF-8")
     found = list(islice(tokens(text.text), MAX_TOKENS + 1))
     if len(found) > MAX_TOKENS:
-        raise text.error(found[-1].start, f"the query must have at most {MAX_TOKENS:,} tokens")
+        raise text.error(found[-1].start, f"the query must have at most {MAX_TOKENS:,} tokens, got more; split it")
     declared = {}
     for word, name, iri in zip(found, found[1:], found[2:], strict=False):
         if word.kind is TokenKind.WORD and word.upper == "PREFIX" and name.text.endswith(":"):

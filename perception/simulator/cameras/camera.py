@@ -141,7 +141,7 @@ class Camera:
         low = np.clip(np.floor(at.min(axis=0)) - 1, 0, None)
         high = np.minimum(np.ceil(at.max(axis=0)) + 2, (self.lens.width, self.lens.height))
         if not (low < high).all():
-            raise SimulationError("the camera does not see the thing")
+            raise SimulationError("the thing must be in the image of the camera; move it, or turn the camera")
         (width, height), (left, above) = (high - low).astype(int).tolist(), low.tolist()
         lens = replace(self.lens, width=width, height=height, cx=self.lens.cx - left, cy=self.lens.cy - above)
         return replace(self, lens=lens)
@@ -177,7 +177,7 @@ def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
     at = np.asarray(eye, dtype=np.float64)
     forward = np.asarray(target, dtype=np.float64) - at
     if not np.isfinite(forward).all() or not np.linalg.norm(forward) > 1e-9:
-        raise SimulationError(f"a camera at {eye!r} cannot look at {target!r}")
+        raise SimulationError(f"`eye` and `target` must be finite and different, got {eye!r} and {target!r}")
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, (0.0, 0.0, 1.0))
     if np.linalg.norm(right) < 1e-9:

@@ -373,7 +373,9 @@ class Stage:
     def _with_load(self, name: str) -> list[str]:
         """Return the thing and all that would sink without it."""
         if name not in self.laid:
-            raise SimulationError(f"no thing called '{name}' is on the table at {self.at:.1f} s")
+            raise SimulationError(
+                f"no thing named '{name}' is on the table at {self.at:.1f} s; it has {', '.join(self.laid) or 'none'}"
+            )
         carried = [name]
         while True:
             left = {other: thing.mesh for other, thing in self.laid.items() if other not in carried}

@@ -64,13 +64,13 @@ def said_pairs(
     """
     pairs = pair_geometry(boxes)
     if len(things) != len(description.nodes):
-        raise GraphError(f"there are {len(description.nodes)} objects, and boxes are named for {len(things)}")
+        raise GraphError(f"`things` must name a box for each of {len(description.nodes)} objects, got {len(things)}")
     outside = [thing for thing in things if thing is not None and not 0 <= thing < len(pairs)]
     if outside:
         raise GraphError(f"there is no box {outside[0]}; the scene has {len(pairs)}")
     sure = [1.0 if confidence is None else float(confidence[i]) for i in range(len(things))]
     if not all(0 <= value <= 1 for value in sure):
-        raise SettingError("`confidence` must be between 0 and 1")
+        raise SettingError(f"`confidence` must be from 0 to 1 for each object, got {sure}")
     words, ends, weights = [], [], []
     index = {name: i for i, name in enumerate(description.nodes)}
     for fact in description.facts():

@@ -78,7 +78,7 @@ def pooled_prior(kinds: Sequence[Array]) -> SizePrior:
     """
     seen = [views for views in kinds if len(views)]
     if not seen:
-        raise SettingError("`views` must have at least one view to learn a size")
+        raise SettingError("`views` must have at least one view, got none; give the views of a kind")
     everything = np.concatenate(seen)
     centre = np.median(everything, axis=0)
     apart = np.sum([np.abs(views - np.median(views, axis=0)).sum(axis=0) for views in seen], axis=0)
@@ -137,7 +137,7 @@ def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeMo
         There is no view.
     """
     if not len(views):
-        raise SettingError("`views` must have at least one view to learn a size")
+        raise SettingError("`views` must have at least one view, got none; give the views of a kind")
     median = np.median(views, axis=0)
     return size_of(len(views), median, np.median(np.abs(views - median), axis=0), prior, relative)
 

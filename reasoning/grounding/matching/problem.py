@@ -147,10 +147,13 @@ class Problem:
         """
         n1, n2 = self.unary.shape
         if assignment.shape != (n1,) or ((assignment < UNMATCHED) | (assignment >= n2)).any():
-            raise MatchingError(f"a map must give each of {n1} objects a thing from 0 to {n2 - 1}, or {UNMATCHED}")
+            raise MatchingError(
+                f"a map must give each of {n1} objects a thing from 0 to {n2 - 1}, or {UNMATCHED}, "
+                f"got {assignment.tolist()!r:.60}"
+            )
         objects = np.flatnonzero(assignment != UNMATCHED)
         if len(np.unique(assignment[objects])) != len(objects):
-            raise MatchingError("a map must not give one thing to two objects")
+            raise MatchingError(f"a map must give each thing to one object only, got {assignment.tolist()!r:.60}")
         if not self.allowed[objects, assignment[objects]].all():
             raise MatchingError("a map must not make a match that `allowed` rules out")
 

@@ -56,12 +56,15 @@ class Candidates:
 
     def __post_init__(self) -> None:
         if self.assignments.ndim != 2 or self.weights.shape != self.assignments.shape[:1]:
-            raise SettingError("`assignments` must have shape (k, n1), and `weights` shape (k,)")
+            raise SettingError(
+                f"`assignments` must have shape (k, n1), and `weights` shape (k,), "
+                f"got {self.assignments.shape} and {self.weights.shape}"
+            )
         if not len(self.weights) or not (self.weights >= 0).all() or not 0 < self.weights.sum() < np.inf:
             raise SettingError("`weights` must have at least one entry, each at least 0, and a sum above 0")
         members = [i for group in self.groups for i in group]
         if len(set(members)) != len(members) or any(not 0 <= i < self.assignments.shape[1] for i in members):
-            raise SettingError("`groups` must be disjoint sets of objects")
+            raise SettingError(f"`groups` must be disjoint sets of objects, got {self.groups}")
         maps, inverse = np.unique(self._in_order(), axis=0, return_inverse=True)
         weights = np.bincount(inverse.ravel(), self.weights, len(maps))
         object.__setattr__(self, "assignments", maps)

@@ -113,12 +113,13 @@ class CommandsOnDemand(TyperGroup):
         """Parse the command line; ``--show-completion`` and ``--install-completion`` may have the name of a shell."""
         if len(args) == 2:
             for parameter in self.get_params(ctx):
-                if parameter.name in ("show_completion", "install_completion") and args[0] in parameter.opts:
+                is_completion = parameter.name in ("show_completion", "install_completion")
+                if is_completion and args[0] in parameter.opts and parameter.callback is not None:
                     if args[1] not in COMPLETED_SHELLS:
                         allowed = ", ".join(COMPLETED_SHELLS[:-1]) + f" or {COMPLETED_SHELLS[-1]}"
                         raise typer.BadParameter(f"the shell must be {allowed}, got {args[1]}", ctx, parameter)
                     parameter.callback(ctx, parameter, args[1])  # ends the program
-        return super().parse_args(ctx, args)  # type: ignore[no-any-return]
+        return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of the commands, in the order of ``--help``."""

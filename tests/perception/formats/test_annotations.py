@@ -111,7 +111,7 @@ def test_only_the_chosen_image_is_read() -> None:
     spoilt = copy.deepcopy(COCO)
     spoilt["annotations"][1]["bbox"] = "none"
     assert len(read_scene(spoilt, 1).objects) == 3
-    with pytest.raises(SceneError, match=r"annotations\[1\]: 'bbox' must have 4 numbers"):
+    with pytest.raises(SceneError, match=r"annotations\[1\]: 'bbox' must be 4 numbers"):
         read_scene(spoilt, 2)
 
 

@@ -229,7 +229,7 @@ CATALOGUE: list[tuple[Any, str]] = [
     (one(max=[1, None]), "objects[0]: 'max' must be a number, got null"),
     (one(max=[1, True]), "objects[0]: 'max' must be a number, got true"),
     (one(max=[1, [1]]), "objects[0]: 'max' must be a number, got a list"),
-    (one(max=[1, 1, 1]), "object 'o1': 'min' and 'max' must both have 2 coordinates, or both 3"),
+    (one(max=[1, 1, 1]), "object 'o1': 'min' and 'max' must both have 2 coordinates, or both 3, got 2 and 3"),
     (one(min=[2, 0]), "object 'o1': on x its min 2 is above its max 1; swap them"),
     (one(min=[0, 1.5]), "object 'o1': on y its min 1.5 is above its max 1; swap them"),
     (
@@ -240,11 +240,11 @@ CATALOGUE: list[tuple[Any, str]] = [
     (one(label="fork", confidence=-0.1), "object 'o1': the confidence must be from 0 to 1, got -0.1"),
     (
         one(candidates={"fork": 0.7, "cup": 0.5}),
-        "object 'o1': the probabilities of 'candidates' must be at least 0, and their sum at most 1",
+        "object 'o1': the probabilities of 'candidates' must be at least 0, and their sum at most 1, got [0.7, 0.5]",
     ),
     (
         one(candidates={"fork": -0.1}),
-        "object 'o1': the probabilities of 'candidates' must be at least 0, and their sum at most 1",
+        "object 'o1': the probabilities of 'candidates' must be at least 0, and their sum at most 1, got [-0.1]",
     ),
     (one(candidates={"fork": "sure"}), "objects[0]: 'candidates': 'fork' must be a number, got a string"),
     (one(label="fork", confidence="sure"), "objects[0]: 'confidence' must be a number, got a string"),
@@ -256,8 +256,11 @@ CATALOGUE: list[tuple[Any, str]] = [
         "white, yellow, or #rrggbb",
     ),
     (one(colour="#f80"), "objects[0]: 'colour': '#f80' is not a colour; write #rrggbb in hexadecimal digits"),
-    (one(colour=[0, 0]), "objects[0]: 'colour' as a list must be red, green and blue, each from 0 to 255"),
-    (one(colour=[0, 0, 256]), "objects[0]: 'colour' as a list must be red, green and blue, each from 0 to 255"),
+    (one(colour=[0, 0]), "objects[0]: 'colour' as a list must be red, green and blue, each from 0 to 255, got [0, 0]"),
+    (
+        one(colour=[0, 0, 256]),
+        "objects[0]: 'colour' as a list must be red, green and blue, each from 0 to 255, got [0, 0, 256]",
+    ),
     (one(colour=[0, 0, "9"]), "objects[0]: 'colour' must be a number, got a string"),
     (one(colour=7), "objects[0]: 'colour' must be a word such as red, #rrggbb, or [red, green, blue], got a number"),
     (one(colour=""), "objects[0]: 'colour' must be a string that is not blank, got \"\""),

@@ -91,7 +91,7 @@ def test_learning_costs_distances_to_the_own_category_only(monkeypatch: pytest.M
 
 def test_views_that_do_not_fit_are_an_error() -> None:
     category = InstanceCategory.of("mug", [view("a", 0)])
-    with pytest.raises(RecognitionError, match="has a view 'a' already"):
+    with pytest.raises(RecognitionError, match="already has a view 'a'"):
         category.with_view(*view("a", 1))
     with pytest.raises(RecognitionError, match="has no view 'x'"):
         category.without_view("x")

@@ -287,9 +287,9 @@ def test_no_object_and_one_object_have_no_relations(n: int, axes: int, relations
         (np.zeros((2, 4)), r"must have shape .* got \(2, 4\)"),
         (np.zeros((2, 2, 4)), r"got \(2, 2, 4\)"),
         (np.zeros((2, 3, 2)), r"got \(2, 3, 2\)"),
-        (np.array([[[0.0, 0], [1, 1]], [[0, 0], [np.nan, 1]]]), "box 1 has a corner that is not finite"),
-        (np.array([[[-np.inf, 0], [1, 1]]]), "box 0 has a corner that is not finite"),
-        (np.array([[[0.0, 0], [1, 1]], [[0, 2], [1, 1]]]), "box 1 has a greatest corner below its least"),
+        (np.array([[[0.0, 0], [1, 1]], [[0, 0], [np.nan, 1]]]), "the corners of box 1 must be finite, got"),
+        (np.array([[[-np.inf, 0], [1, 1]]]), "the corners of box 0 must be finite, got"),
+        (np.array([[[0.0, 0], [1, 1]], [[0, 2], [1, 1]]]), "the lower corner of box 1 must not be above the upper one"),
     ],
 )
 def test_invalid_boxes_are_graph_errors(boxes: Boxes, message: str, relations: Relations) -> None:

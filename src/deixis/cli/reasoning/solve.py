@@ -55,11 +55,11 @@ def solve(
     from deixis.workflows.reasoning.solve import Solved, SolveRequest, calculi_named, solve_text
 
     if closure and scenario:
-        raise DeixisError("--closure and --scenario exclude each other")
+        raise DeixisError("--closure and --scenario must not be given together; choose one")
     if out is not None and not (closure or scenario):
         raise DeixisError("-o writes the network that --closure or --scenario prints; give one of them")
     if verdict and (closure or scenario or explain is not None):
-        raise DeixisError("--verdict excludes --closure, --scenario and --explain")
+        raise DeixisError("--verdict must not be given with --closure, --scenario or --explain; leave it out")
     request = SolveRequest(closure, scenario, explain, not verdict, time_limit)
     calculi, notes = calculi_named(calculus)
     for note in notes:

@@ -73,7 +73,7 @@ def track(
         found = run(stream if record is None else _Recorded(stream, record), live=live, each=each)
     if not found.frames:
         if not found.notes:
-            raise CloudError("the source has no frames")
+            raise CloudError("the source has no frames; name a folder of clouds, cloud files or 'simulator'")
         reason = found.notes[0].removesuffix("; it is left out")
         raise CloudError(f"none of the {count(found.left_out, 'frame')} can be used: {reason}")
     if as_json:

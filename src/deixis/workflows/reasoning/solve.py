@@ -175,7 +175,7 @@ def solve(
     """
     require_path_or_text("solve", network, text)
     if closure and scenario:
-        raise DeixisError("`closure` and `scenario` exclude each other")
+        raise DeixisError("`closure` and `scenario` must not both be True; choose one")
     require_time_limit(time_limit)
     calculi, _ = calculi_named(calculus)
     texts = read_networks(network, calculi) if network is not None else parse_networks(text or "", calculi)

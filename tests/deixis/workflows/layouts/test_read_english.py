@@ -42,5 +42,5 @@ def test_a_layout_is_refused_with_the_command_that_reads_it() -> None:
 
 
 def test_a_file_or_a_text_must_be_given() -> None:
-    with pytest.raises(TypeError, match="either a path or `text`"):
+    with pytest.raises(TypeError, match="must be given a path or `text`"):
         deixis.read()

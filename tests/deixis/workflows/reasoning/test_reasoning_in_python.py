@@ -116,7 +116,7 @@ def test_relate_answers_as_the_command() -> None:
 
 @pytest.mark.parametrize("function", [lambda: deixis.solve(calculus="ra"), lambda: deixis.chronology("a", text="b")])
 def test_a_file_or_a_text_must_be_given(function: object) -> None:
-    with pytest.raises(TypeError, match="either a path or `text`, not both or neither"):
+    with pytest.raises(TypeError, match=r"must be given a path or `text`, got (both|neither)"):
         function()  # type: ignore[operator]
 
 
@@ -124,7 +124,7 @@ def test_a_file_or_a_text_must_be_given(function: object) -> None:
     ("function", "message"),
     [
         (lambda: deixis.solve("examples", calculus="ra"), "examples: this is a folder, not a network file"),
-        (lambda: deixis.solve(text=CONFLICT, calculus="point", closure=True, scenario=True), "exclude each other"),
+        (lambda: deixis.solve(text=CONFLICT, calculus="point", closure=True, scenario=True), "must not both be True"),
         (lambda: deixis.solve(text=CONFLICT, calculus="point", time_limit=-1), "`time_limit` must be at least 0"),
         (lambda: deixis.reason([]), "`data` must name at least one file"),
         (lambda: deixis.validate("ontology/deixis.ttl", shapes=[]), "`shapes` must name at least one file"),

@@ -176,7 +176,7 @@ def test_examples_of_a_grounding_weigh_by_confidence() -> None:
     [
         ([0], None, GraphError, "2 objects"),
         ([0, 7], None, GraphError, "no box 7"),
-        ([0, 1], [1.0, 1.5], SettingError, "between 0 and 1"),
+        ([0, 1], [1.0, 1.5], SettingError, "`confidence` must be from 0 to 1"),
     ],
 )
 def test_lessons_that_cannot_be_are_refused(

@@ -174,7 +174,7 @@ def test_a_scene_of_nothing_has_every_viewpoint() -> None:
 
 
 def test_boxes_that_are_none_are_refused() -> None:
-    with pytest.raises(GraphError, match="not finite"):
+    with pytest.raises(GraphError, match="must be finite"):
         turned(np.full((1, 2, 2), np.nan), 1.0)
 
 

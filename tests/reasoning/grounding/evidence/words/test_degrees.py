@@ -170,7 +170,7 @@ def test_no_pairs_are_no_error(count: int) -> None:
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_boxes_that_are_not_finite_are_refused(bad: float) -> None:
-    with pytest.raises(GraphError, match="not finite"):
+    with pytest.raises(GraphError, match="must be finite"):
         pair_geometry(np.array([[[0.0, 0.0], [bad, 1.0]]]))
 
 
