@@ -71,6 +71,8 @@ WORDINGS = (
     "who showed you the fork?",
     "what happened since noon?",
     "how many things were taken away since noon?",
+    "how often was the fork moved?",
+    "how many things did I show you?",
     "how long was the cup there?",
     "how many forks are on the plate?",
     "how many forks were there at noon?",
@@ -108,9 +110,45 @@ _REWORDED = tuple(
         (rf"^did {_ANYONE} move\b (.+?)(?=$| since| before| after| at| in| between)", r"was \1 moved"),
         (rf"^what did {_ANYONE} move\b", "what was moved"),
         (rf"^what did {_ANYONE} (?:put|lay|set) down\b", "what was put down"),
+        (r"\b(?:most recently|lastly)\b", "last"),
+        (r"^what (?:is|was) the (first|last|latest) (?:thing|object|one) (?:that |which )?"
+         r"((?:was |has been )?(?:moved|removed|taken away|put down|placed|added|shown)|came|went|appeared|vanished)\b",
+         lambda found: f"what {found[2].replace('has been', 'was')} {found[1]}"),
+        (r"\blatest\b", "last"),
+        (r"^(what (?:came|appeared)) (after|before) ((?:the|an?) (?:(?!came|went|moved|was|were|left)\w+ ?)+)$",
+         r"\1 \2 \3 came"),
+        (r"^what did (?:\w+ ){1,3}?(?:put|lay|place|set|leave) (?!down|away)", "what is "),
+        (r"^what (?:do|can) you see\b", "what is there"),
+        (r"^(what|which [\w ]+?) (?:did|have) you (?:see|seen)\b(?! yet)", r"\1 came"),
+        (r"^(?:did|have) you (?:ever )?(?:see|seen) (.+?)(?=$| since| before| after| at| in| between)", r"did \1 come"),
+        (r"^when did you first see (.+)$", r"when did \1 come first"),
+        (r"^(where|when) (?:have|did) you (?:last (?:see|seen) (.+)|(?:see|seen) (.+) last)$",
+         lambda found: f"{found[1]} did you last see {found[2] or found[3]}"),
+        (r"^when (was|were) (.+) there$", r"how long \1 \2 there"),
+        (r"^(?:has|did) (?:any|some)thing (?:changed?|happen(?:ed)?)\b(?! to)", "what changed"),
+        (r"^what (?:has )?happened (?:to|with) (.+)$", r"how long was \1 there"),
+        (r"\bhow many times\b", "how often"),
     )
 )  # fmt: skip
 """Wordings that ask for the same as others, each a pattern and its replacement."""
+
+_HOURS = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
+_PARTS = {"quarter": 15, "a quarter": 15, "half": 30, "five": 5, "ten": 10, "twenty": 20, "twenty five": 25}
+_SPOKEN = re.compile(
+    rf"\b(?:({'|'.join(sorted(_PARTS, key=len, reverse=True))}) (?:minutes )?(past|to) )?({'|'.join(_HOURS)}|\d{{1,2}})"
+    r"(?: (o'clock|oclock))?\b"
+)
+
+
+def _spoken_time(found: re.Match[str]) -> str:
+    """Return a spoken time of day in digits: *half past eleven* as 11:30; a plain number remains unchanged."""
+    part, side, hour, o_clock = found.groups()
+    if part is None and o_clock is None:
+        return found[0]
+    hours = int(hour) if hour.isdigit() else _HOURS.index(hour) + 1
+    minutes = 60 * hours + (_PARTS[part] * (1 if side == "past" else -1) if part else 0)
+    return f"{minutes // 60}:{minutes % 60:02d}"
+
 
 _ASKS = re.compile(
     r"\s*(?:please |can you |tell me |do you (?:know|remember) )*"
@@ -239,6 +277,7 @@ def _plain(text: str) -> str:
     plain = re.sub(r"\b(a|p)\.m\.?(?=\s|$)", r"\1m", plain)
     plain = re.sub(r"^\s*((please|(can you )?tell me|do you (know|remember))\s+)+", "", plain)
     plain = re.sub(r"\bwhich (?=did\b)|\bwhich (one )?of (them|these|those)\b", "which one ", plain)
+    plain = _SPOKEN.sub(_spoken_time, " ".join(plain.split()))
     for pattern, wording in _REWORDED:
         plain = pattern.sub(wording, plain)
     plain = re.sub(r"\bstill\b|(?<=\w )here\b", "", plain)
@@ -290,7 +329,7 @@ def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
         asked = [" ".join(words)] if words else []
     order = next((str(each.children[0]) for each in tree.children if _is(each, "order")), None)
     whens = [each for each in tree.children if isinstance(each, Tree) and each.data in _WHENS]
-    if kind in ("related", "present", "gone", "come", "moved", "shown", "how_many", "how_many_did"):
+    if kind in ("related", "present", "gone", "come", "moved", "shown", "how_many", "how_many_did", "how_many_shown"):
         thing, other = (asked or [None])[0], (nouns or [None])[0]
     else:
         thing, other = (nouns or [None])[0], (nouns[1:] or [None])[0]
@@ -336,7 +375,7 @@ _EVENTS: dict[str, Callable[[str], str]] = {
     "CAME": lambda _: "come",
 }
 
-_DONE = ("when_did", "whether_did", "how_many_did")
+_DONE = ("when_did", "whether_did", "how_many_did", "how_often")
 """Kinds of questions about what happened to things."""
 
 SECONDS = {"second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86_400.0, "week": 604_800.0}

@@ -17,17 +17,22 @@ from deixis.ontology.things.kinds import Kind, Kinds, spaced
 
 GROUPS_FILE = Path(__file__).with_name("groups.txt")
 
+OPENING = " *"
+"""End of a member of a group that stands for all names with the words before it at their beginning."""
+
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A group: its words, the IRIs of the kinds in it, and the names in it that the lexicon lacks.
+    """A group: its words, the IRIs of the kinds in it, the names in it that the lexicon lacks, and first words.
 
-    Each kind stands for its narrower kinds too. The names are in the singular.
+    Each kind stands for its narrower kinds too. The names are in the singular. A name that begins with one of the
+    ``openings`` is in the group, whatever comes after it: *canned*, *frozen*.
     """
 
     words: tuple[str, ...]
     kinds: frozenset[str]
     names: frozenset[str]
+    openings: frozenset[str] = frozenset()
 
     @property
     def label(self) -> str:
@@ -64,12 +69,21 @@ class Groups:
         Returns
         -------
         tuple of Group
-            The groups of its kind, or of a longer known ending of its name.
+            The groups of the first word of its name (*canned*), else of its kind or of a longer known ending.
         """
+        if group := self._by_opening(noun):
+            return group
         kind, name = self.known_as(noun)
         if kind is None:
             return tuple(group for group in self if name in group.names)
         return tuple(group for group in self if not group.kinds.isdisjoint({*kind.broader, kind.iri}))
+
+    def _by_opening(self, noun: str) -> tuple[Group, ...]:
+        """Return the groups of the first words of a compound that neither a group nor the lexicon lists as a whole."""
+        whole = _singular(noun)
+        if " " not in whole or whole in self._names or self._kinds.senses(whole):
+            return ()
+        return tuple(group for group in self if any(whole.startswith(f"{opening} ") for opening in group.openings))
 
     def of_word(self, word: str) -> Group | None:
         """Return the group that a word stands for.
@@ -144,14 +158,17 @@ class Groups:
     def _all(self) -> dict[str, Group]:
         found = {}
         for label, words in self._listed.items():
-            kinds, names = set(), set()
+            kinds, names, openings = set(), set(), set()
             for member in _members(label, self._listed):
+                if member.endswith(OPENING):
+                    openings.add(member.removesuffix(OPENING))
+                    continue
                 senses = self._kinds.senses(member) or self._kinds.senses(_singular(member))
                 if senses:
                     kinds.add(senses[0].iri)
                 else:
                     names.add(_singular(member))
-            found[label] = Group(words[0], frozenset(kinds), frozenset(names))
+            found[label] = Group(words[0], frozenset(kinds), frozenset(names), frozenset(openings))
         return found
 
     @cached_property

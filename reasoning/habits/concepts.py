@@ -29,6 +29,12 @@ IMITATIONS = {
 }
 """Words before a noun that make the thing a toy, and what the whole is then."""
 
+AMOUNTS = re.compile(
+    r"(?:bag|bar|bottle|bowl|box|bunch|can|carton|case|container|cup|glass|jar|jug|loaf|pack|package|packet|pair|piece|roll"
+    r"|sack|set|sheet|slice|spool|stack|stick|tin|tub|tube)s? of (?P<what>.+)"
+)
+"""Names of an amount of something, which goes where that goes: *bag of pretzels*, *bar of soap*."""
+
 LIGHT_WORDS, DARK_WORDS = frozenset({"light", "pale", "pastel"}), frozenset({"dark", "deep"})
 
 TOO_GENERAL = 0.9
@@ -110,10 +116,14 @@ class Concepts:
         """
         name = re.sub(r"\s+\d+$", "", spaced(thing))
         if name not in self._cache:
-            imitation = IMITATIONS.get(name.partition(" ")[0]) if " " in name else None
-            whole = imitation if imitation and not self._ontology.lexicon.knows(name) else name
+            whole = name if self._is_listed(name) else _meant(name)
             self._cache[name] = frozenset({*self._by_kind(whole), *self._by_description(name)})
         return self._cache[name]
+
+    def _is_listed(self, name: str) -> bool:
+        """Return whether the lexicon or a group lists the name as a whole."""
+        lexicon = self._ontology.lexicon
+        return lexicon.knows(name) or self.groups.known_as(name)[1] == lexicon.singular(name)
 
     def knows(self, thing: str) -> bool:
         """Return whether the lexicon or a group has the thing.
@@ -196,6 +206,13 @@ class Concepts:
     @staticmethod
     def _of_group(label: str, size: int) -> Concept:
         return Concept(Aspect.GROUP, label, size)
+
+
+def _meant(name: str) -> str:
+    """Return what an imitation or an amount is: a toy for *toy fox*, soap for *bar of soap*; other names unchanged."""
+    imitation = IMITATIONS.get(name.partition(" ")[0]) if " " in name else None
+    amount = AMOUNTS.fullmatch(name)
+    return imitation or (amount["what"] if amount else name)
 
 
 def _shades(rgb: tuple[int, int, int]) -> set[str]:

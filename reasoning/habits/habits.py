@@ -37,6 +37,10 @@ BY_CHANCE = 1e-4
 """Fit of a thing to a place by mere chance, less than one in the number of all kinds: a fit below it, as by size alone,
 decides little."""
 
+SHARPNESS = 2.0
+"""Exponent of the probabilities of the places, since the weights of the descriptions alone are too cautious:
+cross-validation by scenario chooses 1.9 to 2.2 (``benchmarks/bench_habits.py --sharpness``, with an exponent of 1)."""
+
 LEAST_REASON = 0.25
 """Minimum share of the decision at which the rule behind it is named."""
 
@@ -248,6 +252,7 @@ class Habits:
         because = next((concept.words for concept, _ in self._stated if concept in concepts), None)
         if because is None and reasons.max(initial=0.0) >= LEAST_REASON * total:
             because = self._classes[int(reasons.argmax())].likeliest.words
+        found = _normalised(found**SHARPNESS, EXCEPTION)
         ranked = tuple((self.places[k], float(found[k])) for k in np.argsort(-found, kind="stable").tolist())
         return Placement(thing, *ranked[0], ranked, because, known)
 

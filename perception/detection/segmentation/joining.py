@@ -186,11 +186,15 @@ def lips(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def _hollow(parts: Parts, part: int | None) -> Pairs:
-    """Return pairs of a deep concave part and a deep part of no other colour, which may be its outside."""
+    """Return pairs of a deep concave part and a deep part of no other colour, which may be its outside.
+
+    The two are near each other in plan: in the image, the inside of a glass also meets another glass behind it.
+    """
     limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
     bent = seen.bulge < -limits.min_cavity_bend
     deep = seen.tops - seen.bottoms > limits.min_cavity_depth
-    return pairs.where((bent & deep)[pairs.first] & deep[pairs.second] & ~_differ(parts, pairs))
+    near = _gaps(parts, pairs) < limits.max_attachment_gap
+    return pairs.where((bent & deep)[pairs.first] & deep[pairs.second] & near & ~_differ(parts, pairs))
 
 
 def bridged(parts: Parts) -> Pairs:
@@ -207,9 +211,7 @@ def bridged(parts: Parts) -> Pairs:
         Pairs of parts of one colour that do not meet, with a part that lies on both.
     """
     pairs, over = _below_one(parts)
-    low, high = parts.measures.low, parts.measures.high
-    gaps = np.maximum(low[pairs.first] - high[pairs.second], low[pairs.second] - high[pairs.first]).clip(0.0)
-    pairs = pairs.where(_alike(parts, pairs) & (np.linalg.norm(gaps, axis=1) < parts.settings.max_hidden_gap))
+    pairs = pairs.where(_alike(parts, pairs) & (_gaps(parts, pairs) < parts.settings.max_hidden_gap))
     return _chosen(pairs, lambda a, b: continues(parts, a, b, over[a, b]))
 
 
@@ -463,6 +465,14 @@ def _level(parts: Parts, pairs: Pairs) -> NDArray[np.bool_]:
     """Return a mask of the pairs with equal heights, shape (k,)."""
     tops = parts.measures.tops
     result: NDArray[np.bool_] = np.abs(tops[pairs.first] - tops[pairs.second]) < parts.settings.level_tolerance
+    return result
+
+
+def _gaps(parts: Parts, pairs: Pairs) -> NDArray[np.float64]:
+    """Return the distances of the boxes of each pair as seen from above, in metres, shape (k,)."""
+    low, high = parts.measures.low, parts.measures.high
+    gaps = np.maximum(low[pairs.first] - high[pairs.second], low[pairs.second] - high[pairs.first]).clip(0.0)
+    result: NDArray[np.float64] = np.linalg.norm(gaps, axis=1)
     return result
 
 

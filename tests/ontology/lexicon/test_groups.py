@@ -29,6 +29,32 @@ def test_a_group_in_braces_adds_its_members() -> None:
     assert groups.of_word("sour fruits") is not None
 
 
+def test_first_words_of_a_compound_decide_its_group() -> None:
+    groups = Groups(KINDS, "frozen food: ice, frozen *\nfruit: peach, frozen grape\nfurniture: chair")
+    assert {group.label for group in groups.of("frozen peaches")} == {"frozen food"}
+    assert {group.label for group in groups.of("frozen grapes")} == {"fruit"}
+    assert not groups.of("frozen")
+
+
+@pytest.mark.parametrize(
+    ("noun", "group"),
+    [
+        ("oven cleaner", "cleaning supplies"),
+        ("used paper cup", "rubbish"),
+        ("remote control helicopter", "toy vehicles"),
+        ("cat harness", "pet supplies"),
+        ("throat lozenges", "medicine"),
+        ("cargo shorts", "bottoms"),
+        ("saltines", "snacks"),
+        ("index cards", "stationery"),
+        ("wire strippers", "tools"),
+        ("frozen strawberries", "frozen food"),
+    ],
+)
+def test_everyday_things_are_in_the_groups_of_their_use(noun: str, group: str) -> None:
+    assert group in {one.label for one in Groups(KINDS).of(noun)}
+
+
 def test_every_group_has_kinds_and_a_size() -> None:
     groups = Groups(KINDS)
     assert all(group.kinds and groups.size(group) >= len(group.kinds) for group in groups)

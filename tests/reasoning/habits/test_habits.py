@@ -37,6 +37,15 @@ def test_a_stuffed_zebra_is_a_toy_and_no_animal() -> None:
     assert "animal" not in labels("plush zebra", Aspect.KIND)
 
 
+@pytest.mark.parametrize(
+    ("amount", "thing"), [("bag of pretzels", "pretzel"), ("bars of soap", "soap"), ("box of crayons", "crayon")]
+)
+def test_an_amount_has_the_groups_of_what_it_holds(amount: str, thing: str) -> None:
+    concepts = Concepts(default_ontology())
+    groups = {concept for concept in concepts.of(thing) if concept.aspect is Aspect.GROUP}
+    assert groups and groups <= concepts.of(amount)
+
+
 def test_a_number_after_a_name_changes_nothing() -> None:
     concepts = Concepts(default_ontology())
     assert concepts.of("baking pan 2") == concepts.of("baking pan")

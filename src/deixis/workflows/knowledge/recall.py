@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
-from deixis.answers import Answer
+from deixis.answers import Answer, count
 from deixis.arguments import checks_arguments
 from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuestionError, When, read_question
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
@@ -311,7 +311,7 @@ class _Remembering:
         if kind in ("since", "within"):
             return first, now, Pick.ALL
         if kind == "after":
-            return (last, now, Pick.ALL) if event else (last + MOMENT, last + MOMENT, Pick.ALL)
+            return last + MOMENT, now if event else last + MOMENT, Pick.ALL
         if kind == "before_time":
             return (-math.inf, first, Pick.ALL) if event else (first - MOMENT, first - MOMENT, Pick.ALL)
         if kind == "between":
@@ -350,9 +350,9 @@ class _Remembering:
         """Return the search of the fluents that answer a question."""
         kind = question.kind
         things = None if question.thing is None else self.resolve(question.thing)
-        if kind in EVENTS or kind in ("when_did", "whether_did", "how_many_did"):
+        if kind in EVENTS or kind in ("when_did", "whether_did", "how_many_did", "how_often"):
             return self._search_of_event(question, things)
-        if kind in ("shown", "said", "who", "happened"):
+        if kind in ("shown", "how_many_shown", "said", "who", "happened"):
             return self._search_of_statements(question, things)
         if kind in OF_EXPECTED:
             return self._search_of_expected(question)
@@ -432,7 +432,7 @@ class _Remembering:
 
     def _persons(self, question: RecallQuestion) -> frozenset[str] | None:
         wanted = question.speaker or (self.speaker if question.of_asker else None)
-        if wanted is None or question.kind not in ("shown", "said", *OF_EXPECTED):
+        if wanted is None or question.kind not in ("shown", "how_many_shown", "said", *OF_EXPECTED):
             return None
         origins = (Origin.SAID, Origin.SHOWN)
         known = {each.source.by for each in self.board.holding() if each.source.origin in origins}
@@ -524,6 +524,7 @@ _UNRECORDED = {
     "come": "nothing is recorded as put down",
     "moved": "nothing is recorded as moved",
     "shown": "nothing is recorded as shown",
+    "how_many_shown": "nothing is recorded as shown",
     "said": "nothing is recorded as said",
     "who": "no person is recorded as having shown or named it",
     "present": "nothing is recorded as there",
@@ -575,14 +576,16 @@ def _sentence(found: Recall) -> str:
         return f"Probably{'' if sure >= 0.5 else ' not'}: {statement}."
     if kind in ("whether", "whether_there"):
         return f"Yes: {'; '.join(_fact(found, fact) for fact in facts)}."
-    if kind in ("how_many", "how_many_did"):
+    if kind in ("how_many", "how_many_did", "how_many_shown"):
         number = len({fact.fluent.statement.subject for fact in facts})
         return f"{number}: {', '.join(sorted(_distinct(f'the {fact.name}' for fact in facts)))}."
-    if kind in ("gone", "come", "moved", "when_did", "whether_did"):
+    if kind in ("gone", "come", "moved", "when_did", "whether_did", "how_often"):
         words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[question.event or kind]
         edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
         sentences = _distinct(f"the {fact.name} {words} {_time_phrase(found, end.lower, end.upper)}{_source(fact)}"
                          for fact, end in zip(facts, edge, strict=True))  # fmt: skip
+        if kind == "how_often":
+            return f"{count(len(sentences), 'time')}: {'; '.join(sentences)}."
         return f"Yes: {'; '.join(sentences)}." if kind == "whether_did" else _capital("; ".join(sentences))
     if kind in ("shown", "who"):
         sentences = _distinct(

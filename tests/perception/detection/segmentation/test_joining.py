@@ -22,11 +22,11 @@ ROWS, AROUND = 8, 12
 PLAIN = np.zeros(3)
 
 
-def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0) -> Parts:
+def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0, behind: float = 0.0) -> Parts:
     """Return the near half of the outside of a cup and the far half of its inside, optionally with a handle.
 
     ``tint`` is the difference of their colours, and ``mottle`` the variation within each. The depth jumps where they
-    meet.
+    meet. ``behind`` is the distance in metres by which the inside is farther away, so that it is that of another cup.
     """
     turn, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.1, np.pi - 0.1, AROUND), np.linspace(0, 0.1, ROWS)))
     out = np.stack([np.cos(turn), -np.sin(turn), np.zeros_like(turn)], axis=1)
@@ -34,6 +34,7 @@ def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0) -> Parts:
     grip = np.stack([0.045 + 0.03 * np.ones(handle), np.zeros(handle), np.linspace(0.02, 0.09, handle)], axis=1)
     middles = np.concatenate([0.04 * out, 0.04 * into, grip])
     middles[:, 2] += np.concatenate([z, z, np.zeros(handle)])
+    middles[len(out) :, 1] += behind
     normals = np.concatenate([out, -into, np.tile([1.0, 0.0, 0.0], (handle, 1))])
     of = np.repeat([0, 1], [len(out), len(into) + handle]).astype(np.int32)
     colours = of[:, None] * tint + mottle * np.random.default_rng(0).choice([-1.0, 1.0], (len(of), 3)) / np.sqrt(3)
@@ -47,6 +48,10 @@ def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0) -> Parts:
 
 def test_the_inside_of_a_cup_joins_its_outside() -> None:
     assert len(whole_things(_cup(PLAIN, 0.0))) == 1
+
+
+def test_the_inside_of_a_cup_does_not_join_another_cup() -> None:
+    assert len(whole_things(_cup(PLAIN, 0.0, behind=0.1))) == 2
 
 
 def test_the_inside_of_a_cup_joins_despite_a_handle_in_it() -> None:
