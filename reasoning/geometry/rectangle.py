@@ -125,41 +125,6 @@ class SceneRelations:
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     poses: Poses | None = None  # of the n objects; None: axes along the sides of the boxes, no fronts
 
-<<<<<<< HEAD
-=======
-    @classmethod
-    def from_graph(cls, graph: RelationGraph) -> SceneRelations:
-        """Read the relations of a complete relation graph.
-
-        Parameters
-        ----------
-        graph
-            The graph.
-
-        Returns
-        -------
-        SceneRelations
-            The relations as matrices.
-
-        Raises
-        ------
-        GraphError
-            If an ordered pair has no exact relation, or more than one.
-        """
-        n = len(graph.nodes)
-        exact = sum(relation.bit for relation in graph.vocabulary.of_reading(Reading.EXACT))
-        sets = graph.relation_sets
-        single = (np.bitwise_count(sets) == 1) & ((sets & ~np.int64(exact)) == 0) & graph.positive
-        names = np.full((n, n), -1, dtype=np.int8)
-        names[graph.subjects[single], graph.objects[single]] = np.round(np.log2(sets[single])).astype(np.int8)
-        missing = (names < 0) & ~np.eye(n, dtype=bool)
-        if missing.any() or len(graph) != n * (n - 1):
-            where = np.argwhere(missing)
-            pair = f" ({graph.nodes[where[0][0]]}, {graph.nodes[where[0][1]]})" if len(where) else ""
-            raise GraphError(f"the graph of a scene must have exactly one exact relation for each ordered pair{pair}")
-        return cls(graph.vocabulary, graph.nodes, names, graph.boxes, graph.kinds)
-
->>>>>>> u21/u21
     def index(self, node: str) -> int:
         """Return the position of an object.
 
