@@ -250,7 +250,8 @@ class NounFinder:
         if norm in NUMBERS or norm in ORDINALS or norm[0].isdigit():
             return True
         described = norm.endswith("ly") and (is_adjective(self.norms[at + 1]) or self.norms[at + 1].endswith("ed"))
-        if at > 0 and self.norms[at - 1] in prepositions() and described and norm not in HEDGES:
+        led = at > 0 and (self.norms[at - 1] in prepositions() or self.follows_command(at))
+        if led and described and norm not in HEDGES:
             return self._continues(at + 2)  # 'in loosely tied plastic bags', 'on easily accessible shelves'
         if norm in self._closed:
             if norm in ("about", "around"):
@@ -295,7 +296,7 @@ class NounFinder:
             True if the word before can only be the verb of a command there.
         """
         begins = at == 1 or (at > 1 and self.norms[at - 2] in ("and", "then", ",", ";", ":"))
-        return begins and self.norms[at - 1] in PUT_VERBS
+        return begins and self.norms[at - 1] in PUT_VERBS | FIND_VERBS
 
     def is_participle_of_one(self, at: int) -> bool:
         """Return True for an unknown participle before *one* or *ones*: *unfired ones*.
@@ -384,6 +385,8 @@ class NounFinder:
             return False  # 'which now lies on it'
         if before == "please" and (form is None or form.form == "base") and norm.isalpha():
             return False
+        if at == 1 and before in ("always", "never") and norm in PUT_VERBS and after not in prepositions():
+            return False  # 'always store daily items in the front'
         after_determiner = (
             before in DETERMINERS
             or (at and self.number(at - 1) is not None)

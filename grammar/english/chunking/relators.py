@@ -7,6 +7,7 @@ from functools import cache
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.chunking.noun_phrases import NounChunker
+from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.function_words import (
@@ -294,6 +295,18 @@ class RelatorChunker:
     def _infinitive(self, at: int) -> bool:
         verb = self._verbs.get(self.norms[at])
         after = self.norms[at + 1]
+        norm = self.norms[at]
+        unknown = (
+            verb is None
+            and self._previous() == "NP"
+            and norm.isalpha()
+            and not is_known(norm)
+            and not self.nouns.is_known_noun(norm)
+        )
+        if unknown and (self.nouns.is_determiner(at + 1) or after in PRONOUNS):
+            return after != "that"  # 'to clarify the broth'
+        if unknown and norm.endswith(_VERBAL) and self.nouns.starts(at + 1):
+            return True  # 'to facilitate growth'
         return self.norms[at] == "be" or (
             verb is not None
             and verb.form == "base"
@@ -426,6 +439,8 @@ _AFTER_RIGHT = word_set(
 _TURNED = frozenset({"turn", "angle", "tilt", "fold", "bend", "point"})
 """Verbs before *in* and *outwards* that tell a direction."""
 
+_VERBAL = ("ify", "ate", "ize", "ise")
+"""Endings of verbs that hardly any noun without an article has."""
 _BODY = word_set("hand hands finger fingers thumb thumbs palm fist arm foot feet stride pace")
 
 _MEASURE_WORDS = HEDGES | frozenset(

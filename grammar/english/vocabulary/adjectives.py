@@ -46,7 +46,7 @@ other: modern, fancy, ornate, decorative, typical, normal, usual, additional, ex
 other: immediate, direct, weird, strange, odd, funny, unusual, regular, standard, equal, interesting, exact, last, final
 other: distinct, matching, opposite, electric, digital, electronic, industrial, domestic, personal, available, real
 other: nearby, original, desired, existing, accessible, reachable, appropriate, proper, necessary, required, important
-other: useful, helpful, handy, convenient, ideal, perfect, lovely, beautiful, attractive, elegant
+other: useful, helpful, handy, convenient, ideal, perfect, lovely, beautiful, attractive, elegant, daily, weekly
 other: sturdy, steady, firm, rigid, robust, suitable, corresponding, respective, designated
 other: warm, hot, cold, fresh, large-scale, such, actual, prominent, noticeable, obvious, lefty, empty, busy, ergonomic
 """

@@ -321,3 +321,18 @@ def test_words_about_posture_and_manner_name_no_place(text: str, expected: list[
 def test_word_after_a_counted_plural_is_a_verb(text: str) -> None:
     reading = read(f"The cup is on the box. {text}")
     assert not any("contribute" in str(f.content) or "glimmer" in str(f.content) for f in reading.stated)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Add a layer of charcoal to clarify the water. The cup is on the box.", ["on(cup, box)"]),
+        ("Add a layer of charcoal to facilitate growth. The cup is on the box.", ["on(cup, box)"]),
+        ("Attach the cable to the ethernet port.", ["touching(cable, ethernet_port)"]),
+        ("Put frequently used jars in the box.", ["inside(jars, box)"]),
+        ("Always store daily items in the front.", ["part(items, 'front')"]),
+        ("Hang the pan on a hook mounted inside the door.", ["inside(hook, 'door')", "on(pan, hook)"]),
+    ],
+)
+def test_words_that_can_be_nouns_or_verbs(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
