@@ -18,7 +18,7 @@ _BLOCK = 4096
 """Number of points that are multiplied at once, too few for BLAS to start threads."""
 
 
-def coordinates(points: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+def coordinates(points: NDArray[np.floating], axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the coordinates of points along one axis or several: the product ``points @ axes.T``.
 
     Parameters
