@@ -22,7 +22,7 @@ from deixis.perception.detection.segmentation.surface import Surface, surface_of
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.shown import Shows, is_bare_table, is_large, is_one_object, is_small
 from deixis.perception.detection.table.heights import Raised, raised
-from deixis.perception.detection.table.plane import Plane
+from deixis.perception.detection.table.plane import Plane, coordinates
 from deixis.perception.detection.table.table_top import table_top
 from deixis.perception.detection.table.tables import FoundTable, tables
 from deixis.perception.detection.table.viewpoint import (
@@ -227,16 +227,17 @@ def _has_objects(found: Detection | None, seen: list[FoundTable], settings: Dete
         return False
     table = seen[0]
     top = table.top.on[:: max(1, len(table.top.on) // 2000)]
-    plan = table.view.points @ table.plane.across.T
-    if not len(top) or np.ptp(plan[top], axis=0).max() < settings.scale.min_table_length:
+    points, across = table.view.points, table.plane.across
+    plan = coordinates(points[top], across)
+    if not len(top) or np.ptp(plan, axis=0).max() < settings.scale.min_table_length:
         return False
     labels = found.labels[table.view.places]
     inset = labels[table.top.outside < -settings.scale.min_inset]
     counts = np.bincount(labels[labels >= 0], minlength=len(found.boxes))
     within = np.bincount(inset[inset >= 0], minlength=len(found.boxes))
-    outline = hull_of(plan[top])
+    outline = hull_of(plan)
     for number in np.flatnonzero(within > settings.scale.min_inset_share * counts).tolist():
-        hull = hull_of(plan[labels == number])
+        hull = hull_of(coordinates(points[labels == number], across))
         if hull is None or outline is None or hull.volume < settings.scale.min_rim_share * outline.volume:
             return True
     return False

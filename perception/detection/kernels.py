@@ -443,41 +443,49 @@ def meetings(of, neighbours, points, jump, count):  # type: ignore[no-untyped-de
 
     Notes
     -----
-    The pairs of a patch form a linked list sorted by the other patch, because a patch meets few others.
+    The pairs are counted in a hash table, because they are met in no order and each of them often. The count begins
+    again with a larger table if more than half of it is full; arrays that a loop replaces would make it far slower.
     """
-    head, room, size = np.full(count, -1, np.int64), 4 * count + 16, 0
-    after, other = np.empty(room, np.int64), np.empty(room, np.int64)
-    total, jumped = np.zeros(room, np.int64), np.zeros(room, np.int64)
-    at, last_a, last_b = -1, -1, -1
+    room = 1024
+    while room < 16 * count:
+        room *= 2
+    while True:
+        keys, total, jumped = np.full(room, -1, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64)
+        if _count_meetings(of, neighbours, points, jump, count, keys, total, jumped):
+            break
+        room *= 2
+    filled = np.flatnonzero(keys >= 0)
+    filled = filled[np.argsort(keys[filled])]
+    pairs = np.empty((len(filled), 2), np.int64)
+    pairs[:, 0], pairs[:, 1] = keys[filled] // count, keys[filled] % count
+    return pairs, total[filled].astype(np.float64), jumped[filled].astype(np.float64)
+
+
+@njit(cache=True, nogil=True)
+def _count_meetings(of, neighbours, points, jump, count, keys, total, jumped):  # type: ignore[no-untyped-def]
+    """Count the neighbours and jumps between each pair of patches in a hash table, in place; return False if it fills.
+
+    The key of a pair is its lower number times the ``count`` of patches, plus the higher one. The size of the table is
+    a power of two, and its free ``keys`` are -1.
+    """
+    size, last, at, mask = 0, -1, 0, len(keys) - 1
     for p in range(len(of)):
-        for q in neighbours[p]:
+        for k in range(neighbours.shape[1]):
+            q = neighbours[p, k]
             if q < 0 or of[p] == of[q]:
                 continue
-            a, b, before = min(of[p], of[q]), max(of[p], of[q]), -1
-            if a != last_a or b != last_b:  # usually the pair is the previous one
-                last_a, last_b, at = a, b, head[a]
-                while at >= 0 and other[at] < b:
-                    before, at = at, after[at]
-            if at < 0 or other[at] != b:
-                if size == room:
-                    after, other = np.append(after, np.empty_like(after)), np.append(other, np.empty_like(other))
-                    total, jumped = np.append(total, np.zeros_like(total)), np.append(jumped, np.zeros_like(jumped))
-                    room *= 2
-                after[size], other[size] = at, b
-                if before < 0:
-                    head[a] = size
-                else:
-                    after[before] = size
-                at, size = size, size + 1
+            key = np.int64(min(of[p], of[q])) * count + max(of[p], of[q])
+            if key != last:  # usually the pair is the previous one
+                last, at = key, (key * 0x9E3779B1 >> 13) & mask
+                while keys[at] >= 0 and keys[at] != key:
+                    at = (at + 1) & mask
+                if keys[at] < 0:
+                    if 2 * size > mask:
+                        return False
+                    keys[at], size = key, size + 1
             total[at] += 1
             jumped[at] += squared(points, p, q) > jump[p] * jump[p]
-    pairs, meeting, jumping, k = np.empty((size, 2), np.int64), np.empty(size), np.empty(size), 0
-    for a in range(count):
-        at = head[a]
-        while at >= 0:
-            pairs[k, 0], pairs[k, 1], meeting[k], jumping[k] = a, other[at], total[at], jumped[at]
-            at, k = after[at], k + 1
-    return pairs, meeting, jumping
+    return True
 
 
 @njit(cache=True, nogil=True)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import SECTORS
 from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.table.plane import coordinates
 from deixis.perception.detection.table.tables import FoundTable
 
 
@@ -99,7 +100,7 @@ def is_bare_table(table: FoundTable, settings: DetectionSettings) -> bool:
     limits, top, view = settings.scale, table.top, table.view
     if len(top.on) < limits.min_sheet_share * len(view.points):
         return False
-    plan = view.points @ table.plane.across.T
+    plan = coordinates(view.points, table.plane.across)
     few = top.on[:: max(1, len(top.on) // 2000)]
     is_short = _extents(view.points[top.on], settings)[2] < limits.min_whole_table_length
     if is_short and not _is_cut_by_the_image(table):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import hull_of, in_largest_piece
 from deixis.perception.detection.settings import DetectionSettings, TableTopSettings
-from deixis.perception.detection.table.plane import Plane
+from deixis.perception.detection.table.plane import Plane, coordinates
 from deixis.perception.detection.table.viewpoint import View, directions
 
 _EMPTY, _LEVEL, _ABOVE, _BELOW = 0, 1, 2, 3
@@ -35,7 +35,7 @@ class TableTop:
     def outline(self) -> NDArray[np.float64]:
         """Convex hull of the top along ``plane.across``, as half planes (h, 3); h is 0 for too few points."""
         step = max(1, len(self.on) // self.settings.top.outline_sample_size)
-        hull = hull_of(self.points[self.on[::step]] @ self.plane.across.T)
+        hull = hull_of(coordinates(self.points[self.on[::step]], self.plane.across))
         return np.zeros((0, 3)) if hull is None else np.asarray(hull.equations)
 
     def beyond(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -130,10 +130,10 @@ def _cells(view: View, plane: Plane, settings: TableTopSettings) -> tuple[NDArra
         ahead = rays.mean(axis=0)
         ahead /= max(float(np.linalg.norm(ahead)), 1e-9)
         depth = np.maximum(rays @ ahead, 0.1)  # no sensor sees more than 84 degrees aside
-        at = rays @ np.linalg.svd(ahead[None])[2][1:].T / depth[:, None]
+        at = coordinates(rays, np.linalg.svd(ahead[None])[2][1:]) / depth[:, None]
         side = float(np.ptp(np.percentile(at, (1, 99), axis=0), axis=0).max()) / max(count, 1.0)
     else:
-        at = view.points @ plane.across.T
+        at = coordinates(view.points, plane.across)
         side = settings.plan_cell
     low, high = np.percentile(at, (0.1, 99.9), axis=0)
     side = max(side, float((high - low).max()) / 1000, 1e-9)
@@ -174,7 +174,7 @@ def _upright(
     limits = settings.top
     above = (heights > settings.plane.table_band) & (heights < settings.reach)
     used = np.flatnonzero((of > 0) | above)
-    plan = np.floor(points[used] @ plane.across.T / limits.plan_cell).astype(np.int64)
+    plan = np.floor(coordinates(points[used], plane.across) / limits.plan_cell).astype(np.int64)
     plan -= plan.min(axis=0)
     cells = np.unique(plan[:, 0] * (int(plan[:, 1].max()) + 1) + plan[:, 1], return_inverse=True)[1]
     count = int(cells.max()) + 1
@@ -227,5 +227,5 @@ def largest_part_length(points: NDArray[np.float64], plane: Plane, settings: Tab
     float
         Length in metres.
     """
-    plan = points @ plane.across.T
+    plan = coordinates(points, plane.across)
     return float(np.ptp(plan[in_largest_piece(plan, settings.plan_cell)], axis=0).max())

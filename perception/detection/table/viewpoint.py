@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.settings import DetectionSettings, ViewpointSettings
-from deixis.perception.detection.table.plane import CameraPose, Plane
+from deixis.perception.detection.table.plane import CameraPose, Plane, coordinates
 
 _Kind = TypeVar("_Kind", bound=np.generic)
 
@@ -433,7 +433,7 @@ def table_frame(
     away = _across(up, directions)
     turn = np.stack([np.cross(away, up), away, up])
     if known is None:
-        middle = np.percentile(on @ turn[:2].T, (0.5, 99.5), axis=0).mean(axis=0)
+        middle = np.percentile(coordinates(on, turn[:2]), (0.5, 99.5), axis=0).mean(axis=0)
     else:
         middle = turn[:2] @ (-known[:3, :3].T @ known[:3, 3])
     frame = np.eye(4)
@@ -480,7 +480,7 @@ def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[n
         Points of shape (n, 3); coordinates that are not finite stay so.
     """
     with np.errstate(invalid="ignore"):  # infinity times 0
-        result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
+        result = coordinates(points, frame[:3, :3]) + frame[:3, 3]
     return result
 
 
