@@ -95,7 +95,9 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
             message = f"this is not valid JSON: {json_mistake(wrong.doc, wrong.pos, wrong.msg)}"
         raise error(f"{file}:{wrong.lineno}:{wrong.colno}: {message}") from wrong
     except RecursionError as wrong:
-        raise error(f"{file}: the JSON is nested too deeply") from wrong
+        raise error(
+            f"{file}: the JSON is nested too deeply; it must have at most a few hundred levels of brackets"
+        ) from wrong
     except ValueError as wrong:
         raise error(f"{file}: {wrong}") from wrong
 
@@ -139,6 +141,11 @@ def parse_json_line(text: str, file: str, line: int, error: type[DeixisError], n
         return parse_json(text, f"{file}:{line}", error, no_number)
     except error as wrong:
         if isinstance(wrong.__cause__, json.JSONDecodeError):  # it counts its own lines
+            if text.strip() in CLOSING:  # the first line of one value that is written over several lines
+                raise error(
+                    f"{file}:{line}: each line must be a whole JSON object, got only '{text.strip()}'; this may be "
+                    "another kind of file"
+                ) from wrong
             return parse_json("\n" * (line - 1) + text.removeprefix("\ufeff"), file, error, no_number)
         raise
 

@@ -135,11 +135,10 @@ def modelling(store: ox.Store, models: Models) -> Change:
     Change
         Change of the learned graph, and of the copies of the sets.
     """
-    return together(*(_modelling(store, models_graph(which), triples) for which, triples in models.items()))
-
-
-def _modelling(store: ox.Store, copy: ox.NamedNode, triples: Iterable[ox.Triple]) -> Change:
-    return remodelling(store, copy, *ledger.difference(store, copy, triples))
+    copies = {models_graph(which): triples for which, triples in models.items()}
+    return together(
+        *(remodelling(store, copy, *ledger.difference(store, copy, triples)) for copy, triples in copies.items())
+    )
 
 
 def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]) -> Change:

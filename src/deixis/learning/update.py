@@ -9,10 +9,8 @@ hand, or has another ontology, the next lesson recomputes everything.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
-from urllib.parse import quote, unquote
 
 import pyoxigraph as ox
 
@@ -20,7 +18,14 @@ from deixis.deadline import Deadline
 from deixis.learning.inference.implied_statements import completion
 from deixis.learning.inference.inferred_graph import everything_by_hermit, everything_that_follows, following
 from deixis.learning.lessons.recollection import Recollection, Remembered, recollect, remembered_lesson
-from deixis.learning.models.sizes import Counts, Row, SizeStatistics, SizeView, size_views
+from deixis.learning.models.size_counts import (
+    counted,
+    new_rows,
+    recounted,
+    recounted_from_scratch,
+    stored_rows,
+    stored_shares,
+)
 from deixis.learning.models.word_statistics import replacing, stored_words
 from deixis.learning.models.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
@@ -31,8 +36,8 @@ from deixis.memory.semantic.exchange import import_dump, merging_dump
 from deixis.memory.semantic.opening import open_memory
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.after import After
-from deixis.memory.semantic.rdf.change import Change, concluding, modelling, remodelling, together
-from deixis.memory.semantic.rdf.graphs import COUNTED, STATISTICS, GraphName, ModelSet, models_graph, share_graph
+from deixis.memory.semantic.rdf.change import Change, concluding, modelling, together
+from deixis.memory.semantic.rdf.graphs import GraphName, ModelSet, models_graph
 from deixis.memory.semantic.rdf.links import Link, linking, relinking
 from deixis.memory.semantic.rdf.links import replacing as replacing_links
 from deixis.memory.semantic.rdf.package import package_digest
@@ -42,9 +47,6 @@ from deixis.ontology.lessons.types import Lesson, WordLesson
 from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples, noun_triples
 from deixis.ontology.models.relation_triples import model_triples, models_from_triples
 from deixis.ontology.models.relations import RelationModel
-from deixis.ontology.models.sizes import SIZE_PROPERTIES, size_iri, size_triples
-from deixis.ontology.rdf.triples import iri, text
-from deixis.ontology.rdf.vocabulary import PROV
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.description_logic.subsumption import BeyondLessonsError
 from deixis.reasoning.errors import NothingFoundError
@@ -64,9 +66,6 @@ More lessons are written to a copy of the store, part by part.
 
 MAX_NAMED = 3
 """Maximum number of differing statements that a line of :func:`stale` names."""
-
-SEEN = iri(STATISTICS + "seen")
-"""Predicate from a place in the counts to the view that a lesson has of it."""
 
 
 def remembered(memory: SemanticMemory, ontology: Ontology) -> Recollection:
@@ -297,7 +296,7 @@ def sizes_before(memory: SemanticMemory, ontology: Ontology, lesson: str) -> lis
     """
     known = memory.lessons()
     before = [memory.contributions(id) for id in known[: known.index(lesson)]]
-    return _counted(_recollected_from(before, ontology), ontology)[2]
+    return counted(_recollected_from(before, ontology), ontology)[2]
 
 
 def _departed(memory: SemanticMemory, ontology: Ontology, lesson: str) -> tuple[Change, str]:
@@ -440,9 +439,9 @@ def _followed(
     after = After(memory.store, change)
     inferred, by_hermit = _inferred(after, ontology, stepwise=known == rules)
     if known in (rules, rules + BY_HERMIT):
-        sizes = _recounted(memory.store, ontology, come, gone)
+        sizes = recounted(memory.store, ontology, come, gone)
     else:
-        sizes = _recounted_from_scratch(memory.store, ontology, _recollected(after, ontology))
+        sizes = recounted_from_scratch(memory.store, ontology, _recollected(after, ontology))
     return together(change, inferred, sizes), rules + BY_HERMIT if by_hermit else rules
 
 
@@ -470,66 +469,6 @@ def _inferred(after: After, ontology: Ontology, stepwise: bool) -> tuple[Change,
         return concluding(after.store, everything_that_follows(after, ontology.relations)), False
     except BeyondLessonsError:
         return concluding(after.store, everything_by_hermit(after, ontology.relations)), True
-
-
-def _recounted(store: ox.Store, ontology: Ontology, come: Sequence[Remembered], gone: Sequence[str]) -> Change:
-    """Return the change of the statistics and models of sizes when lessons are added and removed."""
-    counts = Counts(lambda row, key: _value(store, row, key), lambda row: _row(store, row))
-    statistics = SizeStatistics(counts, ontology.sizes)
-    operations: list[ledger.Operation] = []
-    for lesson in gone:
-        share = share_graph(lesson)
-        for quad in list(store.quads_for_pattern(None, SEEN, None, share)):
-            same_box = store.quads_for_pattern(quad.subject, SEEN, None, None)
-            others = (_view(other) for other in same_box if other.graph_name != share)
-            statistics.remove(_view(quad), others)
-        operations.append(ledger.drop(share))
-    operations += _shares(statistics, come, ontology)
-    statistics.settle()
-    copy = models_graph(ModelSet.SIZES)
-    old: list[ox.Triple] = []
-    new: list[ox.Triple] = []
-    for kind, (model, scenes_gone, scenes_come) in statistics.models().items():
-        node, derived = iri(size_iri(kind)), iri(PROV.WAS_DERIVED_FROM)
-        old += [q.triple for p in SIZE_PROPERTIES for q in store.quads_for_pattern(node, iri(p), None, copy)]
-        old += [ox.Triple(node, derived, iri(scene)) for scene in sorted(scenes_gone)]
-        if model is not None:
-            new += size_triples(kind, model, sorted(scenes_come))
-    come_now = [triple for triple in ledger.as_stored(new) if ledger.quad_of(triple, copy) not in store]
-    stay = set(ledger.as_stored(new))
-    left = [triple for triple in old if triple not in stay]
-    return together(remodelling(store, copy, left, come_now), Change(operations=(*operations, *_rows(counts))))
-
-
-def _recounted_from_scratch(store: ox.Store, ontology: Ontology, recollection: Recollection) -> Change:
-    """Return the change that recomputes the statistics and models of sizes from all lessons."""
-    counts, shares, triples = _counted(recollection, ontology)
-    operations = [ledger.drop(graph) for graph in _share_graphs(store)]
-    operations += ledger.deletion(COUNTED, sorted(_kept_rows(store), key=str))
-    models = modelling(store, {ModelSet.SIZES: triples})
-    return together(models, Change(operations=(*operations, *shares, *_rows(counts))))
-
-
-def _counted(recollection: Recollection, ontology: Ontology) -> tuple[Counts, list[ledger.Operation], list[ox.Triple]]:
-    """Return the counts of all lessons, the operations that write the share of each, and the size models as triples."""
-    counts = Counts()
-    statistics = SizeStatistics(counts, ontology.sizes)
-    shares = _shares(statistics, recollection.lessons, ontology)
-    statistics.settle()
-    triples: list[ox.Triple] = []
-    for kind, (model, _, scenes) in statistics.models().items():
-        triples += size_triples(kind, model, sorted(scenes)) if model is not None else ()
-    return counts, shares, triples
-
-
-def _share_graphs(store: ox.Store) -> list[ox.NamedNode]:
-    graphs = (graph for graph in store.named_graphs() if isinstance(graph, ox.NamedNode))
-    return [graph for graph in graphs if graph.value.startswith(f"{STATISTICS}lesson/")]
-
-
-def _kept_rows(store: ox.Store) -> set[ox.Triple]:
-    """Return the stored counts, without what the graph says about itself."""
-    return {quad.triple for quad in store.quads_for_pattern(None, None, None, COUNTED) if quad.subject != COUNTED}
 
 
 def complete_implications(memory: SemanticMemory, ontology: Ontology, deadline: Deadline) -> None:
@@ -572,15 +511,13 @@ def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
     after = After(store)
     follows = everything_that_follows if known == rules else everything_by_hermit
     inferred = set(ledger.as_stored(follows(after, ontology.relations)))
-    counts, shares, sizes = _counted(_recollected(after, ontology), ontology)
+    counts, shares, sizes = counted(_recollected(after, ontology), ontology)
     scratch = ox.Store()
     ledger.update(scratch, shares)
-    kept_shares = {quad for graph in _share_graphs(store) for quad in store.quads_for_pattern(None, None, None, graph)}
-    rows = {ox.Triple(_node(row), _node(key), text(value)) for row, key, value in counts.difference()[1]}
     pairs: list[tuple[str, Set[object], Set[object]]] = [
         ("inferred triples", set(after.triples(GraphName.INFERRED)), inferred),
-        ("counts", _kept_rows(store), rows),
-        ("lessons' shares of the counts", kept_shares, set(scratch)),
+        ("counts", stored_rows(store), new_rows(counts)),
+        ("lessons' shares of the counts", stored_shares(store), set(scratch)),
         (
             "triples of size models",
             set(ledger.triples_in(store, models_graph(ModelSet.SIZES))),
@@ -602,45 +539,3 @@ def _shortened(statement: object) -> str:
     terms = (getattr(statement, name) for name in ("subject", "predicate", "object"))
     values = (str(getattr(term, "value", term)) for term in terms)
     return " ".join(value.rsplit("/", 1)[-1].rsplit("#", 1)[-1][:40] for value in values)
-
-
-def _shares(statistics: SizeStatistics, lessons: Iterable[Remembered], ontology: Ontology) -> list[ledger.Operation]:
-    """Add what lessons show to the statistics; return the operations that write their shares."""
-    operations: list[ledger.Operation] = []
-    for lesson in lessons:
-        views = size_views(lesson, ontology.kinds)
-        for view in views:
-            statistics.add(view)
-        seen = {ox.Triple(_node(view.place), SEEN, text(view.written())) for view in views}
-        operations += ledger.insertion(share_graph(lesson.lesson), sorted(seen, key=str))
-    return operations
-
-
-def _view(quad: ox.Quad) -> SizeView:
-    return SizeView.read(str(getattr(quad.object, "value", "")))
-
-
-# ---- rows of counts as triples: the row is the subject, the key the predicate
-
-
-@lru_cache(maxsize=4096)
-def _node(name: str) -> ox.NamedNode:
-    return iri(STATISTICS + quote(name, safe="/"))
-
-
-def _value(store: ox.Store, row: str, key: str) -> str | None:
-    found = next(store.quads_for_pattern(_node(row), _node(key), None, COUNTED), None)
-    return None if found is None else str(getattr(found.object, "value", ""))
-
-
-def _row(store: ox.Store, row: str) -> Row:
-    quads = store.quads_for_pattern(_node(row), None, None, COUNTED)
-    return {unquote(q.predicate.value.removeprefix(STATISTICS)): str(getattr(q.object, "value", "")) for q in quads}
-
-
-def _rows(counts: Counts) -> list[ledger.Operation]:
-    """Return the operations that update the stored rows."""
-    gone, come = (
-        [ox.Triple(_node(row), _node(key), text(value)) for row, key, value in side] for side in counts.difference()
-    )
-    return [*ledger.deletion(COUNTED, gone), *ledger.insertion(COUNTED, come)]

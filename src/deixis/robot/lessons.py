@@ -78,10 +78,6 @@ class Question:
         )
 
 
-def _settled_by_words(thing: str) -> Settled:
-    return Settled(thing, SettledBy.WORDS, 1.0)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class TableLesson:
     """A table on which a layout was described.
@@ -192,10 +188,8 @@ class TableLesson:
         if table is None:
             return replace(self, settled={}, waiting={})
         roles = tuple(role.name for role in table.layout.roles)
-        settled = {
-            role: known if (known := self.settled.get(role)) and known.thing == thing else _settled_by_words(thing)
-            for role, thing in table.things.items()
-        }
+        settled = {role: Settled(thing, SettledBy.WORDS, 1.0) for role, thing in table.things.items()}
+        settled |= {role: known for role, known in self.settled.items() if table.things.get(role) == known.thing}
         waiting: dict[str, Mapping[str | None, float]] = {
             role: {known.thing: known.probability} for role, known in self.settled.items()
         }

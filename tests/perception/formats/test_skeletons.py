@@ -47,6 +47,7 @@ def test_a_joint_that_is_not_finite_is_not_seen() -> None:
         (line(1, head=[0, 1, 400]), "beyond 100 m"),
         ('{"at": 1, "joints": {}, "perzon": "x"}', "unknown key 'perzon'"),
         ('{"at": 1, "joints": {}', "not valid JSON"),
+        ("{", "each line must be a whole JSON object"),
     ],
 )
 def test_a_wrong_line_is_named(text: str, message: str) -> None:

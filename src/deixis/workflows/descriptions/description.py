@@ -281,8 +281,8 @@ def _statements(sentence: Sentence) -> Iterator[Statement]:
     for clause in sentence.clauses:
         predicates = clause.predicates
         subject = clause.subject
-        picked = [one for one in predicates if one.relation == "kind" and one.arguments and one.positive]
-        picks = subject is not None and bool(subject.pronoun) and any(_is_definite(one) for one in picked)
+        picked = [one.arguments[0] for one in predicates if one.relation == "kind" and one.arguments and one.positive]
+        picks = subject is not None and bool(subject.pronoun) and any(one.determiner == "the" for one in picked)
         if subject is not None and subject.negated and not _noun(subject):  # 'not the one next to the door'
             subject, positive = None, not clause.positive
         else:
@@ -290,10 +290,6 @@ def _statements(sentence: Sentence) -> Iterator[Statement]:
         if not positive:
             predicates = tuple(replace(predicate, positive=not predicate.positive) for predicate in predicates)
         yield Statement(subject, predicates, picks and positive)
-
-
-def _is_definite(predicate: Predicate) -> bool:
-    return predicate.arguments[0].determiner == "the"
 
 
 def _pointed_at(part: Statement) -> tuple[str, Relation] | None:
@@ -477,59 +473,45 @@ def _constraints(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Pro
             relations.append(Relation("between", landmark_pair, positive=predicate.positive))
             continue
         for phrase, landmark in landmarks:
-            positive = predicate.positive != (phrase.negated or phrase.determiner == "no")
-            part = "" if predicate.subject_part is None else predicate.subject_part.head
-            if name == "facing" and part in {"back", "rear"}:
-                name = "near"  # 'with its back to the door': the door is right behind it
-            if phrase.negated and phrase.pronoun == "one":  # 'the desk with the lamp, not the one with the screen'
-                refused = _denied(replace(landmark, negated=False))
-                properties, relations = [*properties, *refused[0]], [*relations, *refused[1]]
-                continue
-            if (person := _person(phrase)) is not None:
-                properties += _from_person(replace(predicate, positive=positive), phrase, name, person)
-                continue
-            if landmark.noun == "wall" and landmark.relations:  # 'the wall with the window': the window says where
-                placed = WALL_RELATIONS.get(name, name)
-                relations.append(
-                    replace(
-                        landmark.relations[0],
-                        name=placed,
-                        degree=str(predicate.degree),
-                        positive=positive,
-                        inverted=False,
-                    )
-                )
-            elif (
-                landmark.noun == "wall" and name in {*WALL_RELATIONS, "near", "far"} and _is_chosen(landmark, predicate)
-            ):
-                relations.append(Relation(name, (landmark,), str(predicate.degree), positive))
-            elif landmark.noun in SURROUNDINGS | {"wall"} | set(LEVELS) and (
-                known := _surface(name, landmark.noun, positive)
-            ):
-                properties += known
-                relations += _on_surface(landmark, positive)
-            elif landmark.noun in SURROUNDINGS:
-                properties += _place(replace(predicate, positive=positive))
-                own = tuple(  # 'on the right side of the room that is red'
-                    one for one in phrase.predicates if not one.arguments and one.relation in {"colour", "material"}
-                )
-                properties += _constraints(own, depth + 1)[0] if positive else ()
-                relations += _on_surface(landmark, positive)
-            else:
-                degree = str(predicate.degree)
-                mutual = [one for one in landmark.relations if one.inverted and one.arguments == (Description(""),)]
-                if mutual and name != "between":  # 'the keyboard skewed to the monitor it is under'
-                    kept = tuple(one for one in landmark.relations if one not in mutual)
-                    landmark = replace(landmark, relations=kept)
-                    relations += [replace(one, arguments=(landmark,), inverted=False) for one in mutual]
-                if name == "with" and (upon := [one for one in landmark.properties if one.word in UPON]):
-                    landmark = replace(
-                        landmark, properties=tuple(one for one in landmark.properties if one not in upon)
-                    )
-                    relations.append(Relation(UPON[upon[0].word], (landmark,), degree, positive, inverted=True))
-                    continue
-                relations.append(Relation(name, (landmark,), degree, positive, predicate.reversed))
+            more, others = _to_landmark(predicate, name, phrase, landmark, depth)
+            properties, relations = [*properties, *more], [*relations, *others]
     return tuple(properties), tuple(relations)
+
+
+def _to_landmark(
+    predicate: Predicate, name: str, phrase: NounPhrase, landmark: Description, depth: int
+) -> tuple[Sequence[Property], Sequence[Relation]]:
+    """Return the properties and the relations that a predicate with a relation to one landmark states."""
+    positive, degree = predicate.positive != (phrase.negated or phrase.determiner == "no"), str(predicate.degree)
+    part = "" if predicate.subject_part is None else predicate.subject_part.head
+    if name == "facing" and part in {"back", "rear"}:
+        name = "near"  # 'with its back to the door': the door is right behind it
+    if phrase.negated and phrase.pronoun == "one":  # 'the desk with the lamp, not the one with the screen'
+        return _denied(replace(landmark, negated=False))
+    if (person := _person(phrase)) is not None:
+        return _from_person(replace(predicate, positive=positive), phrase, name, person), ()
+    if landmark.noun == "wall" and landmark.relations:  # 'the wall with the window': the window says where
+        placed = WALL_RELATIONS.get(name, name)
+        return (), [replace(landmark.relations[0], name=placed, degree=degree, positive=positive, inverted=False)]
+    if landmark.noun == "wall" and name in {*WALL_RELATIONS, "near", "far"} and _is_chosen(landmark, predicate):
+        return (), [Relation(name, (landmark,), degree, positive)]
+    if landmark.noun in SURROUNDINGS | {"wall"} | set(LEVELS) and (known := _surface(name, landmark.noun, positive)):
+        return known, _on_surface(landmark, positive)
+    if landmark.noun in SURROUNDINGS:
+        own = tuple(  # 'on the right side of the room that is red'
+            one for one in phrase.predicates if not one.arguments and one.relation in {"colour", "material"}
+        )
+        of_surface = _constraints(own, depth + 1)[0] if positive else ()
+        return [*_place(replace(predicate, positive=positive)), *of_surface], _on_surface(landmark, positive)
+    relations: list[Relation] = []
+    mutual = [one for one in landmark.relations if one.inverted and one.arguments == (Description(""),)]
+    if mutual and name != "between":  # 'the keyboard skewed to the monitor it is under'
+        landmark = replace(landmark, relations=tuple(one for one in landmark.relations if one not in mutual))
+        relations += [replace(one, arguments=(landmark,), inverted=False) for one in mutual]
+    if name == "with" and (upon := [one for one in landmark.properties if one.word in UPON]):
+        landmark = replace(landmark, properties=tuple(one for one in landmark.properties if one not in upon))
+        return (), [*relations, Relation(UPON[upon[0].word], (landmark,), degree, positive, inverted=True)]
+    return (), [*relations, Relation(name, (landmark,), degree, positive, predicate.reversed)]
 
 
 def _person(phrase: NounPhrase) -> Person | None:
