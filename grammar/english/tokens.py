@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deixis.grammar.english.tree import Degree, Span
 from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
@@ -25,7 +25,7 @@ from deixis.grammar.english.vocabulary.function_words import (
 )
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
-from deixis.grammar.english.vocabulary.verbs import PUT_VERBS, verb_forms
+from deixis.grammar.english.vocabulary.verbs import PLACING_VERBS, PUT_VERBS, verb_forms
 
 MAX_LABEL_WORDS = 5
 """Number of words before a dash that can be a label: *sugar bowl - behind the pot*."""
@@ -85,6 +85,9 @@ _ARROWS = frozenset({"\u2192", "\u21d2", "\u27a1", "\u2794"})
 _SUBJECTS = frozenset({"it", "they", "the", "there", "you", "we"})
 _CORRECTIONS = frozenset({"sorry", "correction", "wait", "no"})
 """Words by which a speaker takes back the place just said."""
+_CORRECTING = frozenset({("scratch", "that"), ("strike", "that"), ("i", "mean"), ("no", "wait")})
+"""Pairs of words that do so."""
+_FILLERS = frozenset({"uh", "um", "er", "erm", "hmm"})
 _RARELY = frozenset({("hardly", "ever"), ("scarcely", "ever"), ("barely", "ever"), ("almost", "never")})
 _DENIALS = {
     ("no", "longer"): "never", ("with", "no"): "without", ("far", "from", "being"): "not", ("not", "a", "single"): "no",
@@ -515,7 +518,13 @@ def _count_halves(words: list[Word]) -> None:
 
 
 def _without_floating_each(words: list[Word]) -> None:
-    """Leave out *each* after the things that it is about: *the cups each have a lid*, *they have a lid each*."""
+    """Leave out *each* after the things that it is about: *the cups each have a lid*, *they have a lid each*.
+
+    *One each side of it* is *one either side of it*.
+    """
+    for i in range(len(words) - 3, 0, -1):
+        if [word.norm for word in words[i : i + 3]] == ["each", "side", "of"] and words[i - 1].norm in ("one", "two"):
+            words[i].norm = "either"
     for i in range(len(words) - 1, 1, -1):
         before, after = words[i - 1], words[i + 1].norm if i + 1 < len(words) else "."
         if words[i].norm != "each" or not before.is_word:
@@ -584,16 +593,38 @@ _NOT_ASKED = word_set("think believe want like say know mean need prefer see fin
 """Verbs after *could you* that ask for no action."""
 
 
+def _join_corrections(words: list[Word]) -> None:
+    """Make each correction one word between commas: *uh, scratch that, in front of it*, *sorry, no, the cup …*."""
+    for i in range(len(words) - 1, 0, -1):
+        if words[i].norm in _FILLERS and words[i - 1].norm == ",":
+            closed = i + 1 < len(words) and words[i + 1].norm == ","
+            del words[i - closed : i + 1]
+    for i in range(len(words) - 2, 0, -1):
+        if (words[i].norm, words[i + 1].norm) in _CORRECTING and not words[i - 1].is_word:
+            words[i].norm, words[i].end = "correction", words[i + 1].end
+            del words[i + 1]
+            if i + 1 < len(words) and words[i + 1].is_word:
+                words.insert(i + 1, replace(words[i], norm=",", is_word=False))
+    for i in range(len(words) - 3, 0, -1):
+        if words[i].norm in _CORRECTIONS and words[i + 1].norm == "," and words[i + 2].norm in _CORRECTIONS:
+            del words[i : i + 2]
+
+
+def _is_preposition(words: list[Word], at: int) -> bool:
+    """Return True for a preposition of one or two words: *on*, *left of*."""
+    return words[at].norm in prepositions() or " ".join(word.norm for word in words[at : at + 2]) in prepositions()
+
+
 def _without_corrected(words: list[Word]) -> None:
     """Leave out a place or a thing that the speaker takes back: *on the left, no, sorry, on the right*."""
     for i in range(len(words) - 3, 1, -1):
         corrects = words[i].norm in _CORRECTIONS and not words[i - 1].is_word and not words[i + 1].is_word
-        if not corrects or words[i + 2].norm not in prepositions():
+        if not corrects or not _is_preposition(words, i + 2):
             continue
         start = i - 1
         while start > 0 and (not words[start].is_word or words[start].norm == "no"):
             start -= 1
-        while start > 0 and (words[start].norm not in prepositions() or words[start].norm == "of"):
+        while start > 0 and (words[start].norm == "of" or not _is_preposition(words, start)):
             start -= 1
         if start > 0:
             del words[start : i + 2]
@@ -608,6 +639,17 @@ def _without_corrected(words: list[Word]) -> None:
         if words[start].norm in DETERMINERS:
             del words[start : i + 2]  # 'the cup, no, the glass, is …'
             return
+
+
+def _read_progressive(words: list[Word]) -> None:
+    """Read *we are putting the flowers on it* as *we put the flowers on it*."""
+    for i in range(len(words) - 3, 0, -1):
+        form = verb_forms().get(words[i + 1].norm)
+        placing = form is not None and form.form == "ing" and form.lemma in PLACING_VERBS
+        placing = placing and words[i + 2].norm in DETERMINERS | POSSESSIVES.keys()
+        if placing and form is not None and words[i].norm in ("am", "are") and words[i - 1].norm in ("i", "we", "you"):
+            words[i + 1].norm = form.lemma
+            del words[i]
 
 
 def _with_commands_after_places(words: list[Word]) -> None:
@@ -770,7 +812,9 @@ def words_of(text: str, span: Span) -> list[Word]:
     _deny_contrasts(found)
     _count_halves(found)
     _without_floating_each(found)
+    _join_corrections(found)
     _without_corrected(found)
+    _read_progressive(found)
     _without_doubts_of_the_reader(text, span, found)
     _with_commands_after_places(found)
     for i in range(len(found) - 2, -1, -1):

@@ -185,7 +185,7 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
             return Chunk("SUB", at, at + 1, norm)
-        if norm == "before" and after in ("me", "us"):
+        if norm == "before" and after in ("me", "us") and previous in JOINT_TYPES | {"", "ADVERB"}:
             return None  # 'before me lies the book'
         if norm in ("before", "after") and previous in FINITE and self.chunks[-1].value.lemma == "come":
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'the salad fork comes before it'

@@ -191,6 +191,9 @@ class Discourse(Statements):
         for predicate in phrase.predicates:
             if predicate.relation == "row":
                 self.order = predicate.part or self.order
+        ordered = bool(phrase.predicates) and all(p.relation == "row" for p in phrase.predicates)
+        if ordered and not phrase.plural and not phrase.members and last_word(phrase.head) in SURFACES:
+            return  # 'workbench, from left to right'
         listed = phrase.members or (phrase,)
         mark = LABEL.match(self.text[phrase.span[1] : self.end])
         label = mark is not None and (phrase.plural or mark["again"] is not None) and bool(phrase.head)
@@ -246,7 +249,9 @@ class Discourse(Statements):
 
     def _is_named_thing(self, noun: str) -> bool:
         """Return True for a known noun or a compound that names a thing: *no flash unit*, but not *no problem*."""
-        return bool(noun) and (self.nouns.knows(last_word(noun)) or (" " in noun and can_have_a_place(noun, self.nouns)))
+        return bool(noun) and (
+            self.nouns.knows(last_word(noun)) or (" " in noun and can_have_a_place(noun, self.nouns))
+        )
 
     def _with_shared_places(self, listed: tuple[NounPhrase, ...]) -> Iterator[NounPhrase]:
         """Yield the things of a note; *oil and vinegar behind it* are one coordination, both behind it."""

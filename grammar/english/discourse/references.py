@@ -228,7 +228,11 @@ class References:
             self.surface_named = self.sentence
             return self.surface
         worn = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"he", "she"} and last in REMOVABLE
-        if last in PARTS and noun == last and not worn and (phrase.owner is not None or phrase.of is not None):
+        stands_on_own = relation == "on" and self._is_own(phrase, besides)
+        if stands_on_own and last in PARTS - REMOVABLE:
+            return None  # 'the lamp is left of the mat, on its foot'
+        is_part = last in PARTS and noun == last and not worn and not stands_on_own
+        if is_part and (phrase.owner is not None or phrase.of is not None):
             whole = None
             if phrase.owner is not None and phrase.owner.pronoun == "it" and besides is not None:
                 whole = next((e for e in self.named[-1:] if e is not besides and not e.itself.members), None)
@@ -269,6 +273,17 @@ class References:
         if phrase.owner is not None:
             self.find(phrase.owner, relation, besides)
         return self._new(phrase, Role.SURROUNDING if noun in SURROUNDINGS else Role.THING)
+
+    def _is_own(self, phrase: NounPhrase, besides: Entity | None) -> bool:
+        """Return True for *its* of the subject, of which the words before tell a place: *left of it, on its cap*."""
+        last = self.recent[0] if self.recent else None
+        owned = phrase.owner is not None and phrase.owner.pronoun == "it" and not phrase.owner.head
+        if not owned or besides is None:
+            return False
+        other = last is not None and last.sentence == self.sentence and last.subject is not None
+        if other and last is not None and last.subject is not None and last.subject.itself is not besides.itself:
+            return False  # 'the pot is in the middle, and the spoon lies left of it, on its lid'
+        return bool(self.named) and besides.itself not in self.named
 
     def _new(self, phrase: NounPhrase, role: Role) -> Entity:
         entity = Entity(phrase.head, role, born=self.sentence, indefinite=phrase.determiner in ("a", "an", None))

@@ -14,6 +14,7 @@ from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.adjectives import EMPTY
 from deixis.grammar.english.vocabulary.nouns import (
     HOLDERS,
+    PARTS,
     PEOPLE,
     SUBSTANCES,
     SURFACES,
@@ -22,6 +23,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.relation_words import prepositions
+from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.ontology.graph.claims import COLLECTIVE, PLACES
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
@@ -100,6 +102,19 @@ def _whole(entity: Entity) -> Entity:
 
 _LATERAL = frozenset({"left", "right"})
 """Relations after which *the other side* of a thing is the opposite one."""
+
+
+def _are_contents(held: Entity, vessel: Entity) -> bool:
+    """Return True for several things with one vessel, which are in it: *a bowl with apples*, but not *with handles*."""
+    several = held.plural or bool(held.members)
+    return several and not (vessel.plural or vessel.members) and last_word(held.noun) not in PARTS | _PATTERNS
+
+
+_TOLD_APART = word_set("box case")
+"""Vessels that *with* often tells apart by a part: *the one with the antennas*."""
+
+_PATTERNS = word_set("stripe dot spot flower letter word number picture initial star pattern figure line")
+"""Nouns of what can be painted on a thing."""
 
 
 class Relations(Mentions):
@@ -600,6 +615,8 @@ class Relations(Mentions):
             self._pair(held, "on", subject, False)
         elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
             self._pair(held, "inside", subject, False)
+        elif noun in VESSELS - HOLDERS - _TOLD_APART and "with" in words and _are_contents(held, subject):
+            self._pair(held, "inside", subject, False)  # 'a bowl with apples'
         elif not {"with", "without"}.isdisjoint(words):  # what a thing has may be a part of it
             self._add("near", (held,), (subject,), how=self._guessed(Guess.ACCOMPANIED))
 

@@ -42,6 +42,9 @@ _PLACING = word_set("leave keep")
 _NAMING = frozenset({"know", "call", "refer", "name", "term", "dub"})
 """Verbs before another name of a thing."""
 
+_OCCASIONS = word_set("time room space place reason need use search request call plan table seat")
+"""Nouns with which *for* says more than what a thing is used for."""
+
 _MAKING = frozenset({"make", "create", "form", "build"})
 
 _LAYERS = word_set("layer bed row line ring circle pile heap mound stack border coat coating")
@@ -97,6 +100,27 @@ def _beneficiary(chunks: list[Chunk], at: int) -> Run | None:
     if purpose and chunks[at + 1].value.owner is None and type_at(chunks, at - 3) == "THERE":
         return at + 2, None  # 'there is a tray for mail on the cabinet'
     return (at + 2, None) if helped or types == ["PUT", "NP", "PREP", "NP", "PREP"] else None
+
+
+def _purpose(chunks: list[Chunk], at: int) -> Run | None:
+    """Find what a thing is for, between its name and its place: *the dishes for screws are behind the mat*."""
+    types = [type_at(chunks, at + k) for k in range(-2, 3)]
+    named = types[1:4] == ["NP", "PREP", "NP"] and types[0] in JOINT_TYPES | {"", "ADVERB"}
+    placed = types[4] in FINITE | {"PREP", "ADV"}
+    if not named or not placed or chunks[at].value.preposition.phrase != "for":
+        return None
+    thing, use = chunks[at - 1].value, chunks[at + 1].value
+    if (
+        not thing.head
+        or not thing.known
+        or thing.pronoun
+        or not use.head
+        or use.pronoun
+        or last_word(thing.head) in _OCCASIONS
+    ):
+        return None
+    leave_out(chunks[at : at + 2], "what a thing is for does not say where it is")
+    return at + 2, None
 
 
 def _free_place(chunks: list[Chunk], at: int) -> Run | None:
@@ -522,8 +546,8 @@ REWRITES = (
     without(_first_of_two_commands), without(_used_things), without(_followers),
     without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement),
     without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),
-    without(_measures_apart), without(_beneficiary), without(_free_place), _without_comments, without(_search),
-    without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
+    without(_measures_apart), without(_beneficiary), without(_purpose), without(_free_place), _without_comments,
+    without(_search), without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
     without(_comparison_of_size), without(_posture_of_the_person), without(_apposition_of_object),
 )  # fmt: skip
 """Rewritings that leave out what tells no place, in their order; most report it."""

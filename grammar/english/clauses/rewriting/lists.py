@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from deixis.grammar.english.chunking.chunk import FINITE, Chunk
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import (
@@ -117,23 +115,6 @@ def _ends_with_conjunction(chunks: list[Chunk], at: int) -> bool:
     return [type_at(chunks, at), type_at(chunks, at + 1)] == ["AND", "NP"] and type_at(chunks, at + 2) not in FINITE
 
 
-def _with_owners_repeated(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *each has a fork on its left and a knife on its right* with *each has* before the knife as well."""
-    for i in range(len(chunks) - 8):
-        types = [type_at(chunks, i + k) for k in range(9)]
-        joint = 6 if types[5:7] == ["COMMA", "AND"] else 5
-        second = [type_at(chunks, i + joint + k) for k in (1, 2, 3)]
-        if types[:5] != ["NP", "TVERB", "NP", "PREP", "NP"] or types[joint] != "AND" or second != ["NP", "PREP", "NP"]:
-            continue
-        owner, own, other = (chunks[i + k].value for k in (0, 4, joint + 3))
-        each = owner.pronoun == "each" or owner.determiner in ("each", "every")
-        theirs = all(p.owner is not None and p.owner.pronoun in ("it", "they") for p in (own, other))
-        if each and theirs and chunks[i + 1].value.lemma == "have":
-            again = [replace(chunk) for chunk in chunks[i : i + 2]]
-            return [*chunks[: i + joint + 1], *again, *chunks[i + joint + 1 :]]
-    return chunks
-
-
 def _with_shared_spots(chunks: list[Chunk]) -> list[Chunk]:
     """Return *with the flutes and clarinets on the left* with the place after both plurals."""
     found: list[Chunk] = []
@@ -235,7 +216,7 @@ def _with_places_of_pairs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_accompanied_members, _with_owners_repeated, _with_first_of_owned, _with_things_of_several, _with_shared_spots,
+    _with_accompanied_members, _with_first_of_owned, _with_things_of_several, _with_shared_spots,
     _with_pronouns_of_lists, without(_bare_superlative), without(_partition), without(_count_apart),
     _with_places_of_pairs,
 )  # fmt: skip

@@ -271,8 +271,8 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture, _without_resumed_subjects, _with_existential_have,
-    _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs, _with_contact_clauses,
-    without(_stranded), _with_places_before_verbs,
+    _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture, _without_resumed_subjects,
+    _with_existential_have, _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs,
+    _with_contact_clauses, without(_stranded), _with_places_before_verbs,
 )  # fmt: skip
 """Rewritings that put clauses into plain order, one after the other."""

@@ -483,9 +483,7 @@ class ClaimDegrees:
         if term in AIMING and self.poses is not None:
             return aim_degrees(term, value, self.poses, self.boxes)
         if term == "each_side":
-            beside, before = (
-                np.maximum(self.relation(word), self.relation(word).T) for word in ("left", "in_front")
-            )
+            beside, before = (np.maximum(self.relation(word), self.relation(word).T) for word in ("left", "in_front"))
             return np.asarray(np.maximum(beside, BEFORE_ON_EACH_SIDE * before))
         if term in ("nearest", "farthest"):
             sign = -1 if term == "nearest" else 1

@@ -214,3 +214,12 @@ def test_an_ordinal_counts_the_things_that_can_be_in_its_group() -> None:
 @pytest.mark.parametrize("value", ["", "0 from left", "two from left", "2 from above"])
 def test_an_unknown_order_says_nothing(value: str) -> None:
     assert ordinal_degrees(value, TABLE.mean(axis=1), np.ones(len(TABLE))) is None
+
+
+def test_two_things_on_each_side_have_the_third_between_them() -> None:
+    claims = [Claim("each_side", ("a",), ("s",)), Claim("each_side", ("b",), ("s",))]
+    tables = said(claims)
+    pairs = [tuple(ends) for ends in tables.ends.tolist()]
+    assert {(0, 1), (0, 2)} <= {tuple(sorted(pair)) for pair in pairs}
+    beside = tables.tables[pairs.index((1, 0))]
+    assert beside[5, 2] > beside[3, 2]
