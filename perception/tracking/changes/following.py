@@ -233,7 +233,7 @@ def carry(thing: Pipeline, hands: Hands) -> None:
 def take_away(
     thing: Pipeline, things: Things, table: Table, seen: Observation, same: NDArray[np.bool_], hands: Hands
 ) -> None:
-    """Let a thing move with a hand that hides it, if what is seen of its place shows that it is not there any more.
+    """Let a thing move with a hand that hides it, if what is seen of its place shows that it is no longer there.
 
     It has moved as the hand has since the last frame that showed a part of the thing at its place.
 

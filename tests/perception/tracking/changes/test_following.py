@@ -56,7 +56,7 @@ def test_hidden_thing_moves_after_a_hand_and_not_below_the_table(hand_at: float,
 
 
 @pytest.mark.parametrize("is_there", [False, True])
-def test_thing_moves_with_the_hand_if_the_seen_part_of_its_place_is_empty(is_there: bool) -> None:
+def test_hidden_thing_leaves_with_the_hand_if_its_place_is_empty(is_there: bool) -> None:
     look = first_look([PLATE, MUG])
     mug = list(look.things)[1]
     if not is_there:
