@@ -151,8 +151,8 @@ def announced_thing(text: str) -> str | None:
     (sentence,) = sentences
     if sentence.clauses:
         clause, *others = sentence.clauses
-        said = clause.mood is Mood.STATEMENT and clause.positive and all(one.positive for one in clause.predicates)
-        phrase = clause.subject if said and not others else None
+        is_stated = clause.mood is Mood.STATEMENT and clause.positive and all(one.positive for one in clause.predicates)
+        phrase = clause.subject if is_stated and not others else None
     else:
         phrase = sentence.fragment
     if phrase is None or not phrase.head or phrase.negated or phrase.plural or phrase.count not in (None, 1):

@@ -132,7 +132,7 @@ def _verify_episodes(memory: Path) -> tuple[_Events | None, tuple[Finding, ...]]
             found = tuple(Finding(files.EPISODES, line) for line in board.verify())
             marks = board.holding(Pattern(predicate=CONSOLIDATED))
             named = {
-                said.subject: said.object for said in (each.statement for each in marks) if said.object is not None
+                fact.subject: fact.object for fact in (each.statement for each in marks) if fact.object is not None
             }
             return None if found else _Events(board.origin.isoformat(), board.events(), named), found
     except DamagedMemoryError as error:

@@ -224,12 +224,12 @@ class NativeKernel:
             magic, digest, header, code = self.path(types).read_bytes().split(b"\n", 3)
             if magic + b"\n" != MAGIC or hashlib.sha256(header + code).hexdigest() != digest.decode():
                 return None
-            said = json.loads(header)
-            address = _linked(said["symbol"], code)
+            signature = json.loads(header)
+            address = _linked(signature["symbol"], code)
         except (OSError, ValueError, ImportError, RuntimeError, LookupError, AttributeError):
             return None
         taken = list(_c_types(arguments))
-        return Native(address, taken, said["returned"], said["single"], bool(self.options.get("nogil")))
+        return Native(address, taken, signature["returned"], signature["single"], bool(self.options.get("nogil")))
 
     def keep(self, dispatcher: Any, arguments: tuple[Any, ...]) -> bool:
         """Compile the kernel for the types of the arguments, and write its code.

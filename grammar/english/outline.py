@@ -127,13 +127,13 @@ def noun_outline(phrase: NounPhrase) -> str:
     str
         Text such as ``the tall+ lamp [not next_to(the door)]``.
     """
-    said = " [" + ", ".join(predicate_outline(p) for p in phrase.predicates) + "]" if phrase.predicates else ""
+    ending = " [" + ", ".join(predicate_outline(p) for p in phrase.predicates) + "]" if phrase.predicates else ""
     negation = "not " if phrase.negated else ""
     if phrase.members:
         return (
             f"({negation}"
             + f" {phrase.joined_by} ".join(noun_outline(member) for member in phrase.members)
-            + f"){said}"
+            + f"){ending}"
         )
     words = [] if phrase.owner is None else [f"{noun_outline(phrase.owner)}'s"]
     words += [phrase.determiner] if phrase.determiner is not None else []
@@ -142,7 +142,7 @@ def noun_outline(phrase: NounPhrase) -> str:
     words += [word.replace(LITERAL, "") for word in (phrase.head, phrase.pronoun) if word]
     if phrase.of is not None:
         words.append(f"of {noun_outline(phrase.of)}")
-    return negation + " ".join(words) + said
+    return negation + " ".join(words) + ending
 
 
 def _viewpoint(view: Viewpoint) -> str:

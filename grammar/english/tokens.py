@@ -715,8 +715,8 @@ def _without_doubts_of_the_reader(text: str, span: Span, words: list[Word]) -> N
 
 def _says_no_place(words: str) -> bool:
     """Return True for a list of properties in brackets: *(chrome, lead frayed)*."""
-    said = words.casefold().replace(",", " ").split()
-    return "," in words and (prepositions().keys() | PRONOUNS.keys() | IS_FORMS).isdisjoint(said)
+    norms = words.casefold().replace(",", " ").split()
+    return "," in words and (prepositions().keys() | PRONOUNS.keys() | IS_FORMS).isdisjoint(norms)
 
 
 def _without_labels_of_denials(found: list[Word]) -> None:

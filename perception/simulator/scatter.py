@@ -98,8 +98,8 @@ class _Floor:
                 yaw = float(self._rng.uniform(0, 2 * np.pi))
                 corners = _corners(x, y, yaw, plan)
                 own = corners[1:3] - corners[:2]
-                theirs = (self._taken[:, 1:3] - self._taken[:, :2]).transpose(0, 2, 1)
-                apart = _apart(corners @ own.T, self._taken @ own.T) | _apart(corners @ theirs, self._taken @ theirs)
+                others = (self._taken[:, 1:3] - self._taken[:, :2]).transpose(0, 2, 1)
+                apart = _apart(corners @ own.T, self._taken @ own.T) | _apart(corners @ others, self._taken @ others)
                 if bool(apart.all()):
                     self._taken = np.append(self._taken, corners[None], axis=0)
                     x, y = float(x), float(y)

@@ -156,6 +156,6 @@ def _plural_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> list[str]
         one, plural = nouns.singular(word.norm)
         form = verb_forms().get(word.norm)
         if plural:
-            said = form is not None and form.form == "s" and not nouns.knows(word.norm)
-            return [] if one in PLACE_NOUNS or said else head
+            is_verb = form is not None and form.form == "s" and not nouns.knows(word.norm)
+            return [] if one in PLACE_NOUNS or is_verb else head
     return []

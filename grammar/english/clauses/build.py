@@ -469,11 +469,11 @@ class Builder(Transformer[Any, Built]):
             measured, relation = False, "on"  # 'on the bottom level'
         if (measured or told) and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            said = tuple(
+            places = tuple(
                 replace(p, relation="far") if p.relation == "from" else p
                 for p in noun.phrase.predicates if p.arguments and (measured or p.relation == "from")
             )  # fmt: skip
-            return (*said, *extra)  # 'at a safe distance from the stove', 'at eye level behind the desk'
+            return (*places, *extra)  # 'at a safe distance from the stove', 'at eye level behind the desk'
         if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
             misunderstood(span, f"'{whole.head}' is not a place")
             return extra
@@ -764,9 +764,9 @@ def _beside(member: NounPhrase, several: NounPhrase) -> NounPhrase:
     """Return *the knife to their right* after *with two limes on it* with the limes as what it is beside."""
     made = []
     for p in member.predicates:
-        theirs = bool(p.arguments) and all(a.pronoun == "they" for a in p.arguments)
+        is_of_several = bool(p.arguments) and all(a.pronoun == "they" for a in p.arguments)
         own = p.viewpoint is not None and p.viewpoint.own is not None and p.viewpoint.own.pronoun == "they"
-        made.append(replace(p, arguments=(several,), viewpoint=None if own else p.viewpoint) if theirs else p)
+        made.append(replace(p, arguments=(several,), viewpoint=None if own else p.viewpoint) if is_of_several else p)
     return replace(member, predicates=tuple(made))
 
 

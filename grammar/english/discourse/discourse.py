@@ -539,8 +539,8 @@ class Discourse(Statements):
             members = tuple(replace(m, negated=False) for m in subject.members if m.negated is negated)
             if members:
                 phrase = members[0] if len(members) == 1 else replace(subject, members=members)
-                said = tuple(replace(p, positive=not p.positive) if negated else p for p in clause.predicates)
-                self._clause(replace(clause, subject=phrase, predicates=said), sentence)
+                answered = tuple(replace(p, positive=not p.positive) if negated else p for p in clause.predicates)
+                self._clause(replace(clause, subject=phrase, predicates=answered), sentence)
 
     def _replaces_what_should_be(self, entity: Entity, clause: Clause) -> None:
         """Take back *it should be in the drawer* before *but it is on the shelf*."""

@@ -48,8 +48,8 @@ def paraphrase(facts: Sequence[StatedFact], surface: str = "table") -> str:
         clause = _clause(fact, surface)
         known = clauses.setdefault(clause.key(), clause)
         known.subjects += [subject for subject in clause.subjects if subject not in known.subjects]
-    said = "; ".join(clause.words() for clause in clauses.values())
-    return f"{said[0].upper()}{said[1:]}." if said else ""
+    text = "; ".join(clause.words() for clause in clauses.values())
+    return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
 def _named(names: Sequence[str]) -> str:
@@ -91,11 +91,11 @@ class _Clause:
         plural = len(self.subjects) > 1 or is_plural(self.subjects[0])
         be = auxiliary(self.stated, plural) + (" not" if self.denied else "")
         content = self.stated.content
-        said = f"{_named(self.subjects)} {be} {self.predicate}"
+        text = f"{_named(self.subjects)} {be} {self.predicate}"
         if isinstance(content, Claim) and not self.predicate:
-            said = clause_of_claim(content, be)
+            text = clause_of_claim(content, be)
         condition = self.stated.condition
-        return f"{condition[0].lower()}{condition[1:]}, {said}" if condition else said
+        return f"{condition[0].lower()}{condition[1:]}, {text}" if condition else text
 
 
 def _clause(stated: StatedFact, surface: str) -> _Clause:

@@ -161,8 +161,8 @@ def _point(number: int, stated: StatedFact, surface: str) -> _Point | None:
         return _Point(number, (subject,), words[0], (thing,), mode, not content.positive, stated)
     if len(content.subjects) > 1 or content.optional or content.arguments or content.weight < 1:
         return None
-    said = said_of_claim(content, surface)
-    return None if said is None else _Point(number, content.subjects, said, (), mode, not content.positive, stated)
+    clause = said_of_claim(content, surface)
+    return None if clause is None else _Point(number, content.subjects, clause, (), mode, not content.positive, stated)
 
 
 def _alone(stated: StatedFact, surface: str, names: _Names) -> str:
@@ -212,8 +212,8 @@ def _joined(points: Sequence[_Point]) -> Iterator[_Sentence]:
         left.setdefault(point.subjects[0], {}).setdefault(point.key, point)
     while left:
         by_key: dict[_Key, list[str]] = {}
-        for subject, said in left.items():
-            for key in said:
+        for subject, predicates in left.items():
+            for key in predicates:
                 by_key.setdefault(key, []).append(subject)
         best: tuple[int, tuple[str, ...], set[_Key]] = (0, (), set())
         for subjects in {tuple(subjects) for subjects in by_key.values() if len(subjects) > 1}:
@@ -227,9 +227,9 @@ def _joined(points: Sequence[_Point]) -> Iterator[_Sentence]:
         yield _Sentence(
             subjects, [left[subject].pop(key) for subject in subjects for key in list(left[subject]) if key in common]
         )
-        left = {subject: said for subject, said in left.items() if said}
-    for subject, said in left.items():
-        yield _Sentence((subject,), list(said.values()))
+        left = {subject: predicates for subject, predicates in left.items() if predicates}
+    for subject, predicates in left.items():
+        yield _Sentence((subject,), list(predicates.values()))
 
 
 def _words(key: _Key) -> int:

@@ -121,12 +121,12 @@ def revealed_part(
     if len(own) < MIN_PART:
         return own[:0]
     tints = reference.colour.reshape(-1, 3)[own].astype(np.float64)
-    unlike, theirs = thing.unlikeness(points, tints), np.zeros(len(own), np.bool_)
+    unlike, of_others = thing.unlikeness(points, tints), np.zeros(len(own), np.bool_)
     for other in others:
         held = np.flatnonzero(other.contains(points, thing.settings.margin))
         if len(held):
-            theirs[held] |= other.unlikeness(points[held], tints[held]) < unlike[held]
-    new = own[~theirs]
+            of_others[held] |= other.unlikeness(points[held], tints[held]) < unlike[held]
+    new = own[~of_others]
     return new if len(new) >= MIN_PART else new[:0]
 
 
@@ -337,8 +337,8 @@ class FlatThing:
         steps = [np.linspace(-side / 2, side / 2, GRID) for side in sides]
         grid = np.stack([*(axis.ravel() for axis in np.meshgrid(*steps)), np.zeros(GRID**2)], axis=1)
         places = np.array(box.centre) + grid @ turned_axes(box.yaw)
-        theirs = np.isin(self._reference.owner, (self._thing.slot, piece.slot))
-        before = np.where(theirs, NEAREST, self._reference.depth)
+        of_pair = np.isin(self._reference.owner, (self._thing.slot, piece.slot))
+        before = np.where(of_pair, NEAREST, self._reference.depth)
         return bool(self._view.hides(places, before, MIN_BEFORE).mean() > MIN_FILLED)
 
     def _leads_to(self, piece: Mask, line: Mask) -> bool:

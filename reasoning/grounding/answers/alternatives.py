@@ -68,8 +68,8 @@ def _similar(
     found: dict[str, float] = {}
     for group in groups:
         if name in group and len(group) <= MAX_LISTED_GROUP:
-            fellows = (evidence.description.index(other) for other in group if other != name)
-            matched = (alignment.assignment[j] for j in fellows if alignment.assignment[j] != UNMATCHED)
+            members = (evidence.description.index(other) for other in group if other != name)
+            matched = (alignment.assignment[j] for j in members if alignment.assignment[j] != UNMATCHED)
             found |= {evidence.scene.nodes[p]: 0.0 for p in matched}
     if alignment.runners_up is not None and alignment.margins is not None and alignment.runners_up[i] != UNMATCHED:
         found.setdefault(evidence.scene.nodes[alignment.runners_up[i]], max(float(alignment.margins[i]), 0.0))

@@ -118,14 +118,14 @@ def member_probabilities(evidence: Evidence, assignment: Assignment, group: int)
     free[[thing for i, thing in enumerate(assignment.tolist()) if i != group and thing != UNMATCHED]] = False
     if not free.any():
         return np.zeros(len(free))
-    said, things = evidence.description, np.arange(len(free))
+    graph, things = evidence.description, np.arange(len(free))
     for fact, other, fillers in _facts_about(evidence, assignment, group):
         holds = np.zeros(len(free), dtype=np.bool_)
         for thing in fillers:
             tried = np.tile(assignment, (len(free), 1))
             tried[:, group], tried[:, other] = things, thing
             holds |= (evidence.degrees(tried)[:, fact] > 0) & (things != thing)
-        score = score + np.where(holds, 0.0, np.log(OUTLIERS)) * said.net_weights[evidence.facts[fact]]
+        score = score + np.where(holds, 0.0, np.log(OUTLIERS)) * graph.net_weights[evidence.facts[fact]]
     best = float(score[free].max())
     result: Array = np.where(free, np.exp(np.minimum(score - best, 0.0)), 0.0)
     return result
@@ -149,8 +149,8 @@ def broken_of_members(evidence: Evidence, assignment: Assignment, group: int) ->
         Violated facts by the position of the thing. A fact about two groups holds of a thing if it holds with any thing
         of the other group.
     """
-    said, nodes = evidence.description, evidence.scene.nodes
-    single = [i for i, name in enumerate(said.nodes) if name not in evidence.uncounted and assignment[i] != UNMATCHED]
+    graph, nodes = evidence.description, evidence.scene.nodes
+    single = [i for i, name in enumerate(graph.nodes) if name not in evidence.uncounted and assignment[i] != UNMATCHED]
     taken = {int(assignment[i]) for i in single}
     things = [thing for thing in _could_be(evidence, assignment, group) if thing not in taken]
     firm = evidence.firm()
@@ -164,19 +164,19 @@ def broken_of_members(evidence: Evidence, assignment: Assignment, group: int) ->
             tried[:, group], tried[:, other] = thing, rivals
             if len(rivals) and not (evidence.degrees(tried)[:, fact] > 0).any():
                 edge = int(evidence.facts[fact])
-                first, second = (thing, rivals[0]) if said.subjects[edge] == group else (rivals[0], thing)
+                first, second = (thing, rivals[0]) if graph.subjects[edge] == group else (rivals[0], thing)
                 seen = evidence.scene.relation(first, second)
                 pair = nodes[first], nodes[second]
-                outcomes.append(FactOutcome(said.fact(edge), Outcome.VIOLATED, 0.0, pair, seen))
+                outcomes.append(FactOutcome(graph.fact(edge), Outcome.VIOLATED, 0.0, pair, seen))
         broken[thing] = tuple(outcomes)
     return broken
 
 
 def _facts_about(evidence: Evidence, assignment: Assignment, group: int) -> Iterator[tuple[int, int, list[int]]]:
     """Yield the position of each comparable fact about a group, its other object, and the things that may fill it."""
-    said = evidence.description
+    graph = evidence.description
     for fact, edge in enumerate(evidence.facts.tolist()):
-        ends = (int(said.subjects[edge]), int(said.objects[edge]))
+        ends = (int(graph.subjects[edge]), int(graph.objects[edge]))
         if group not in ends:
             continue
         other = ends[1] if ends[0] == group else ends[0]

@@ -150,12 +150,12 @@ def _place(prop: Property) -> str:
 
 def _from_person(prop: Property, person: Person) -> str:
     """Return a place as a person sees it: *closest to you*, *second closest to me*, *on your left*."""
-    whom, whose = PRONOUNS[person]
+    person_word, whose = PRONOUNS[person]
     if prop.word in {"near", "far"}:
         degree = "superlative" if prop.rank is not None and prop.degree == "plain" else prop.degree
         near = DEGREES.get((prop.word, degree), {"near": "near", "far": "far from"}[prop.word])
         rank = "" if prop.rank in {None, 1} else f"{ORDINALS.get(prop.rank or 0, f'number {prop.rank}')} "
-        return f"{rank}{near} {whom}"
+        return f"{rank}{near} {person_word}"
     if prop.rank is not None:
         return f"that is {ORDINALS.get(prop.rank, f'number {prop.rank}')} from {whose} {prop.word}"
     far = "far " if prop.degree == "superlative" else ""

@@ -350,11 +350,11 @@ def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
     """
     with scratch_folder() as scratch:
         import_dump(file, scratch / "memory")
-        with SemanticMemory.open(scratch / "memory") as theirs:
-            brought = models_from_triples(theirs.models(ModelSet.WORDS))
+        with SemanticMemory.open(scratch / "memory") as imported:
+            brought = models_from_triples(imported.models(ModelSet.WORDS))
             if inspect(target) in (FolderState.ABSENT, FolderState.EMPTY):
-                theirs.commit(*_followed(theirs, ontology, Change(), from_scratch=True))
-                open_memory(target, create=True, fill=lambda store: store.bulk_extend(theirs.store)).close()
+                imported.commit(*_followed(imported, ontology, Change(), from_scratch=True))
+                open_memory(target, create=True, fill=lambda store: store.bulk_extend(imported.store)).close()
                 return
     with SemanticMemory.open(target) as memory:
         change = merging_dump(memory, Path(file))

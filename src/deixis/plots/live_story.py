@@ -139,9 +139,9 @@ def _draw(axes: Axes, moment: Moment) -> None:
     if moment.view is not None and moment.view.exists():
         with np.load(moment.view) as view:
             _draw_view(axes, moment, view["image"], view["owner"], view["ids"].tolist())
-    said = [*moment.said, *(("wrong", fault) for fault in moment.faults if not moment.said)]
+    spoken = [*moment.said, *(("wrong", fault) for fault in moment.faults if not moment.said)]
     lines: list[str] = []
-    for who, words in said:
+    for who, words in spoken:
         whole = textwrap.wrap(f"{who}: {words}", LINE, subsequent_indent="   ")
         lines += whole if len(whole) <= MAX_SAID else [*whole[: MAX_SAID - 1], f"{whole[MAX_SAID - 1]} …"]
     lines = [*lines[:MAX_LINES], *[""] * (MAX_LINES - len(lines))]
@@ -192,13 +192,13 @@ def _save(figure: Figure, path: Path) -> None:
 def _page(moments: Sequence[Moment]) -> str:
     shown = []
     for number, moment in enumerate(moments, 1):
-        said = "".join(f"<li><b>{escape(who)}</b>: {escape(words)}</li>" for who, words in moment.said)
+        spoken = "".join(f"<li><b>{escape(who)}</b>: {escape(words)}</li>" for who, words in moment.said)
         wrong = "".join(f'<li class="wrong">{escape(fault)}</li>' for fault in moment.faults)
         known = ", ".join(f"{id} ({(name or 'unknown').replace('_', ' ')})" for id, name in moment.things.items())
         new = f" New: {escape(', '.join(sorted(moment.new)))}." if moment.new else ""
         shown.append(
             f'<section><h2>{number}. {moment.at:.1f} s</h2><img src="{_file(number)}" alt="The table after '
-            f'{moment.at:.1f} s"><p>Tracked: {escape(known) or "nothing"}.{new}</p><ul>{said}{wrong}</ul></section>'
+            f'{moment.at:.1f} s"><p>Tracked: {escape(known) or "nothing"}.{new}</p><ul>{spoken}{wrong}</ul></section>'
         )
     style = "body{font:16px sans-serif;max-width:60em;margin:2em auto;padding:0 1em}img{max-width:100%}"
     return (

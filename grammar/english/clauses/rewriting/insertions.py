@@ -60,30 +60,34 @@ def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             leave_out(inside, "what parentheses say under a condition is not read")
             i = (closing or i) + 1
             continue
-        said = opened and kept[-1].type == "NP"
+        follows_noun = opened and kept[-1].type == "NP"
         doing = inside[1:] if opened and inside[0].type == "ADVERB" else inside
-        called = doing[0].value if said and doing and doing[0].type in ("PART", "TPART") else None
+        called = doing[0].value if follows_noun and doing and doing[0].type in ("PART", "TPART") else None
         if isinstance(called, VerbGroup) and called.lemma.removesuffix("ed") in _CALLING:
             leave_out(inside, "another name of a thing does not say where it is")
             i = (closing or i) + 1  # 'the lower drawer (sometimes marked crisper)'
             continue
         done = [c.type for c in inside] == ["NP", "PART"] and inside[0].value.determiner is None
-        if said and done:
+        if follows_noun and done:
             leave_out(inside, "how a thing is meanwhile is not where it is")
             i = (closing or i) + 1  # 'place the sofa (cushions removed) in the truck'
             continue
-        if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
+        if (
+            follows_noun
+            and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART")
+            and "NP" in [c.type for c in inside]
+        ):
             aimed = inside[0].type == "PREP" and inside[0].value.preposition.degree is Degree.SUPERLATIVE
             subjects = [k for k in range(len(kept) - 1) if kept[k].type == "NP" and kept[k + 1].type in FINITE]
             of = kept[subjects[-1]] if aimed and subjects else kept[-1]  # 'A is on the left of B (farthest from C)'
             after += apart([of], inside, chunk.span)
             i = (closing or i) + 1
             continue
-        if said and [c.type for c in inside[:2]] == ["NP", "REL"] and "COMMA" not in [c.type for c in inside]:
+        if follows_noun and [c.type for c in inside[:2]] == ["NP", "REL"] and "COMMA" not in [c.type for c in inside]:
             leave_out(inside, "this says what the thing before is, not where it is")
             i = (closing or i) + 1  # 'the rooks (the pieces that look like towers) go …'
             continue
-        if said and {c.type for c in inside} <= _NAMES and sum(c.type == "NP" for c in inside) == 1:
+        if follows_noun and {c.type for c in inside} <= _NAMES and sum(c.type == "NP" for c in inside) == 1:
             i = (closing or i) + 1  # 'the long panels (A) go …', 'under a tea towel (mice!)'
             continue
         kept.append(chunk)

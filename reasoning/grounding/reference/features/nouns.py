@@ -179,11 +179,13 @@ class Nouns:
         ndarray
             Probabilities, shape (n,).
         """
-        said = [noun for noun in nouns if noun]
+        named = [noun for noun in nouns if noun]
         return np.array(
             [
                 sum(
-                    share for name, share in names.items() if any(self._pair(noun, name)[-1] >= CALLED for noun in said)
+                    share
+                    for name, share in names.items()
+                    if any(self._pair(noun, name)[-1] >= CALLED for noun in named)
                 )
                 for names in room.names
             ],

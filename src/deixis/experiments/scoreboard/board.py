@@ -271,10 +271,10 @@ class Board:
         default, *others = (contestant.name for contestant in self.contestants)
         found = []
         for group in self.groups:
-            mine = self.by_unit(default, group, measure)
+            of_default = self.by_unit(default, group, measure)
             for other in others:
-                theirs = self.by_unit(other, group, measure)
-                differences = [mine[unit] - theirs[unit] for unit in theirs]
+                of_other = self.by_unit(other, group, measure)
+                differences = [of_default[unit] - of_other[unit] for unit in of_other]
                 if differences:
                     found.append((group, other, interval(differences), paired_p(differences, seed)))
         adjusted = holm([p for *_, p in found])

@@ -284,8 +284,8 @@ def steps(plan: ScoreboardPlan) -> int:
 
 def _limited(plan: ScoreboardPlan, setting: Setting, main: Board, tick: Callable[[str], None]) -> Limited:
     limits: list[Limit] = [bayes_limit(table(setting, n, plan.seed)) for n in range(plan.count(setting.objects))]
-    mine = main.by_unit(DEFAULT, setting, "right")
-    rights = [mine[setting, number] for number in range(len(limits))]
+    of_default = main.by_unit(DEFAULT, setting, "right")
+    rights = [of_default[setting, number] for number in range(len(limits))]
     words = [limit.words for limit in limits]
     tick(f"Bayes limit, {setting.objects} objects")
     return Limited(

@@ -129,7 +129,7 @@ def sureness_lines(found: Grounding) -> list[str]:
     known = [match for match in matches.values() if match.probability is not None]
     rest = f"; {left_out} left out" if left_out else ""
     if not known:
-        line = f"{share(decided, total, 'name')} decided{rest}; this engine gives no probabilities."
+        line = f"{share(decided, total, 'name')} decided{rest}; the answer has no probabilities."
         return ["", doubt(f"{line[0].upper()}{line[1:]}", decided < total)]
     if decided == total:
         what = "its match" if total == 1 else "each match"

@@ -101,7 +101,7 @@ class LiveRobot:
             Its name; None if it is not known.
         """
         found = (each.statement for each in self._now(LAYOUT))
-        return next((said.object for said in found if said.subject == "table"), None)
+        return next((fact.object for fact in found if fact.subject == "table"), None)
 
     def faults(self) -> tuple[str, ...]:
         """Return what is wrong with the table.

@@ -221,8 +221,8 @@ def _spoken(board: Blackboard, chosen: _Chosen) -> set[str]:
     """Return the events in which persons said the sentence that is taken back, as views name them."""
     if chosen.sentence is None:
         return set()
-    said = (each for each in board.holding() if chosen.holds_of_fluent(each, board.moment))
-    return {event_of(board.origin, each.source.event) for each in said if each.source.event is not None}
+    fluents = (each for each in board.holding() if chosen.holds_of_fluent(each, board.moment))
+    return {event_of(board.origin, each.source.event) for each in fluents if each.source.event is not None}
 
 
 def _shown(board: Blackboard, before: Mapping[str, Teachings], after: Mapping[str, Teachings]) -> set[str]:

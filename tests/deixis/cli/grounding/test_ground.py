@@ -65,7 +65,7 @@ def test_the_text_says_how_sure_the_answer_is(tmp_path: Path) -> None:
     least, name = min(rows[:12])
     assert line == f"Sure of 1 of 12 names (probability 0.99 or more); the least certain is {name} ({least:.2f})."
     out = deixis("ground", SCRIPT1, SCENE, "--engine", "similarity")[1]
-    assert "of 12 names decided; this engine gives no probabilities." in out
+    assert "of 12 names decided; the answer has no probabilities." in out
     left_out = write(tmp_path / "more.layout", "plate left of knife; candle, vase, lamp, clock left of fork")
     (line,) = [line for line in deixis("ground", left_out, SCENE)[1].splitlines() if line.startswith("Sure of ")]
     assert "of 7 names" in line
