@@ -648,6 +648,41 @@ class Blackboard(Closing):
             found = self.now(pattern) if start is None and end is None else self.holding(pattern, start, end)
             return self.write(*(Finish(each.id, at) for each in found if each.is_open), by=by)
 
+    def update_where(
+        self,
+        pattern: Pattern,
+        by: str,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        new_start: float | None = None,
+        new_finish: float | None = None,
+        certainty: float | None = None,
+        source: Source | None = None,
+    ) -> int:
+        """Give all fluents that match a pattern new values, as one write.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        by
+            Name of the writer.
+        start, end
+            Only fluents that may hold in this window; by default it has no end on that side.
+        new_start, new_finish, certainty, source
+            New values; None leaves a value as it is.
+
+        Returns
+        -------
+        int
+            Sequence number of the last change.
+        """
+        with self._lock:
+            found = self.holding(pattern, start, end)
+            changes = (Update(each.id, None, new_start, new_finish, certainty, source) for each in found)
+            return self.write(*changes, by=by)
+
     def delete_where(self, pattern: Pattern, by: str, start: float | None = None, end: float | None = None) -> int:
         """Remove all fluents that match a pattern, as one write.
 

@@ -97,6 +97,16 @@ def test_changes_of_one_batch_apply_in_order() -> None:
         assert {each.last for each in board.changes()} == {4}
 
 
+def test_all_fluents_of_a_pattern_get_new_values_in_one_write() -> None:
+    with Blackboard.transient() as board:
+        board.write(Add(on("f1", 1.0, 2.0)), Add(on("f2", 3.0)), Add(on("f3", 5.0)), by="test")
+        last = board.update_where(Pattern("cup"), "judge", start=2.5, end=9.0, certainty=0.5, new_finish=8.0)
+        assert {each.last for each in board.changes(since=3)} == {last}
+        assert [(each.id, each.certainty, each.finish.lower) for each in board.holding()] == [
+            ("f1", 1.0, 2.0), ("f2", 0.5, 8.0), ("f3", 0.5, 8.0)
+        ]  # fmt: skip
+
+
 def test_unknown_finished_and_backward_changes_are_refused() -> None:
     with Blackboard.transient() as board:
         with pytest.raises(UnknownFluentError, match="no fluent 'f9'"):

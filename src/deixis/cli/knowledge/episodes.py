@@ -171,11 +171,18 @@ def update(
         raise DeixisError("there is no new value; give --certainty, --start or --finish")
     with _board(memory) as board:
         before = board.sequence
-        chosen = ids or []
-        if not _by_ids(ids, pattern, window):
-            chosen = [each.id for each in board.holding(_pattern(*pattern), *(window or (None, None)))]
-        changes = (Update(id, start=start, finish=finish, certainty=certainty) for id in chosen)
-        last = board.write(*changes, by=by)
+        if _by_ids(ids, pattern, window):
+            changes = (Update(id, start=start, finish=finish, certainty=certainty) for id in ids or ())
+            last = board.write(*changes, by=by)
+        else:
+            last = board.update_where(
+                _pattern(*pattern),
+                by,
+                *(window or (None, None)),
+                new_start=start,
+                new_finish=finish,
+                certainty=certainty,
+            )
     _print_changed("Updated", last - before, last, as_json)
 
 

@@ -18,9 +18,10 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError, UnknownTermError
 from deixis.grammar.formats.fluents import FluentFile, bounds_to_json, format_fluents, parse_fluents
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.experiences import CONSOLIDATED, Experience, Holding, episode, experiences
+from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED, Experience, Holding, episode, experiences
 from deixis.memory.episodes.fluents.changes import Add, Change, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.subscription import Subscription
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import nearest
@@ -737,3 +738,30 @@ def _mark(board: _Episodes, experience: Experience, lesson: str | None, by: str)
     source = Source(Origin.INFERRED, by, experience.id)
     statement = (experience.name, CONSOLIDATED, lesson)
     return Add(episodic(board.new_id("c"), statement, start=experience.finish, source=source))
+
+
+def consolidate_in_background(
+    board: Blackboard, session: _Learner, done: Callable[[Consolidation], object] = lambda result: None
+) -> Subscription:
+    """Consolidate each experience when its recording finishes, in a thread of its own.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    session
+        The session that learns; its methods must be safe to call from threads.
+    done
+        Called with each result.
+
+    Returns
+    -------
+    Subscription
+        The subscription; cancel it to end the task.
+    """
+
+    def recorded(change: Logged) -> None:
+        if change.after is not None and not change.after.is_open:
+            done(consolidate(board, session))
+
+    return board.subscribe("consolidation", Pattern(predicate=RECORDED), recorded)

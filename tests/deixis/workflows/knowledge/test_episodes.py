@@ -23,9 +23,11 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.workflows.knowledge.episodes import (
     Consistency,
+    Consolidation,
     Memory,
     check_consistency,
     consolidate,
+    consolidate_in_background,
     fluents_of_text,
     known_classes,
     memory_lines,
@@ -171,6 +173,17 @@ def test_described_experience_becomes_a_layout_once(board: Blackboard) -> None:
     assert len(list(memory_lines(Memory.EPISODIC, board, pupil))) == 2
     assert len(list(memory_lines(Memory.WORKING, board, pupil))) == len(board.now())
     assert list(memory_lines(Memory.PROCEDURAL, board, pupil)) == []
+
+
+def test_finished_experience_is_consolidated_in_the_background(board: Blackboard) -> None:
+    results: list[Consolidation] = []
+    task = consolidate_in_background(board, Pupil(), results.append)
+    start_recording(board, "lunch", 0.0, by="test")
+    board.add(episodic("p1", ("t1", "at", "[0, 0, 0, 0.2, 0.2, 0.1]"), start=1.0, source=SEEN), by="test")
+    board.add(episodic("s1", ("anna", "said", "fork right of plate"), start=2.0, source=SEEN), by="test")
+    finish_recording(board, "lunch", 3.0, by="test")
+    assert task.wait(board.sequence, BUSY_SECONDS)
+    assert [result.lessons for result in results] == [{"lunch": "lesson-1"}]
 
 
 @pytest.mark.parametrize(
