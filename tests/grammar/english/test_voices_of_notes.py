@@ -4,7 +4,12 @@ import pytest
 
 from deixis.grammar.english.reader import read_english
 from deixis.report.layouts.read import reading_to_dict
-from tests.grammar.english.test_discourse import asserted
+
+
+def asserted(text: str) -> set[str]:
+    found = read_english(text).reading
+    assert found is not None
+    return {str(fact.content) for fact in found.stated if fact.asserted}
 
 
 @pytest.mark.parametrize(
@@ -39,7 +44,7 @@ def test_one_each_side_is_one_on_either_side() -> None:
 
 def test_a_clause_after_a_list_of_owned_things_is_not_in_it() -> None:
     found = asserted("The tray has a jug on its left, and the napkins are on the plate.")
-    assert {"left(jug, tray)", "on(napkins, plate)"} <= found or "on(napkins, plate)" in found
+    assert {"left(jug, tray)", "on(napkins, plate)"} <= found
 
 
 def test_a_surface_is_not_in_a_row() -> None:
