@@ -91,9 +91,9 @@ def test_absent_objects_are_absent() -> None:
 
 
 def test_a_script_comes_from_a_path_or_a_text() -> None:
-    with pytest.raises(TypeError, match="not both or neither"):
+    with pytest.raises(TypeError, match="must be given a path or `text`, got neither"):
         deixis.read_script()
-    with pytest.raises(TypeError, match="not both or neither"):
+    with pytest.raises(TypeError, match="must be given a path or `text`, got both"):
         deixis.read_script("some.layout", text="a left of b")
 
 

@@ -6,13 +6,16 @@ from dataclasses import replace
 
 from deixis.grammar.english.chunking.modifiers import ModifierFinder
 from deixis.grammar.english.chunking.noun_positions import GENERIC_NOUNS, NOUN_OR_PREPOSITION
-from deixis.grammar.english.tree import Adjective, NounPhrase
+from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
     APPROXIMATE,
     COLLECTIVES,
     DETERMINERS,
     HEDGES,
+    IS_FORMS,
+    MODALS,
     ORDINALS,
     PLURAL_PRONOUNS,
     POSSESSIVES,
@@ -88,6 +91,10 @@ class NounChunker(ModifierFinder):
         pronoun = self._pronoun(i, previous)
         if pronoun is not None and owner is None:
             plural = norms[i] in PLURAL_PRONOUNS
+            if pronoun == "nothing" and self._describes(i + 1):  # 'nothing flammable may lie on it'
+                span = self._span(i + 1, i + 2)
+                adjective = Adjective(norms[i + 1], "other", Degree.PLAIN, span)
+                return i + 2, NounPhrase(self._span(start, i + 2), pronoun=pronoun, adjectives=(adjective,)), ()
             return i + 1, NounPhrase(self._span(start, i + 1), pronoun=pronoun, plural=plural, negated=negated), ()
         while norms[i] in DETERMINERS and not (norms[i] == "another" and norms[i + 1] in self._closed):
             if (
@@ -166,6 +173,12 @@ class NounChunker(ModifierFinder):
         if self.norms[end] in ("position", "direction", "angle"):
             end += 1
         return end, NounPhrase(self._span(start, end), head="o'clock", count=hour, owner=owner), ()
+
+    def _describes(self, at: int) -> bool:
+        """Return True for a word between *nothing* and a verb that is a quality, known or not."""
+        norm = self.norms[at]
+        plain = norm.isalpha() and norm not in self._closed and norm not in self._verbs and norm not in ADVERBS
+        return plain and self.norms[at + 1] in MODALS.keys() | IS_FORMS
 
     def _pronoun(self, at: int, previous: str) -> str | None:
         norm = self.norms[at]

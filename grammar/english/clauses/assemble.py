@@ -283,6 +283,9 @@ class Assembly:
         for i, verb in enumerate(verbs):
             front = predications if i == 0 else ()
             none = subject.phrase.pronoun in ("nothing", "none") or subject.phrase.determiner == "no"
+            if none and subject.phrase.pronoun and subject.phrase.adjectives:
+                misunderstood(span, "a denial of all things of a quality does not say which", "say it of each of them")
+                continue
             if none and verb.thing is None and verb.group.kind in ("other", "unknown"):
                 misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
                 continue

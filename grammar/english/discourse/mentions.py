@@ -81,6 +81,9 @@ COMPARTMENTS = frozenset(
 """Nouns of places in a thing, which stand for the thing: *in slot 3 of the rack*."""
 
 
+_LOOSE = frozenset({"clay", "cotton"})
+"""Materials that are kept in vessels."""
+
 _SIGNS = frozenset({"sign", "trace", "hint"})
 """Nouns of what shows that a thing is there."""
 
@@ -261,7 +264,14 @@ class Mentions(Drafting, ABC):
             self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))
         if phrase.of is not None and phrase.of.head and new:
             stuff = phrase.of.head
-            if last_word(phrase.head) in VESSELS and not is_material_noun(last_word(stuff)):  # 'a cup of glass'
+            vessel = last_word(phrase.head) in VESSELS
+            filled = vessel and (stuff in _LOOSE or not is_material_noun(last_word(stuff)))
+            if is_material_noun(stuff) and not filled and not phrase.of.determiner:  # 'a jug of green glass'
+                self._add("material", (entity,), (), value=stuff, how=plain)
+                for adjective in phrase.of.adjectives:
+                    if adjective.dimension == "colour" and adjective.degree is Degree.PLAIN:
+                        self._add("colour", (entity,), (), value=adjective.word, how=plain)
+            elif filled:  # 'a bag of clay'
                 self._add("contents", (entity,), (), value=stuff, how=plain)
 
     def _count(self, phrase: NounPhrase) -> None:

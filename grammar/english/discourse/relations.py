@@ -113,6 +113,9 @@ def _are_contents(held: Entity, vessel: Entity) -> bool:
 _TOLD_APART = word_set("box case")
 """Vessels that *with* often tells apart by a part: *the one with the antennas*."""
 
+_RACKS = word_set("rack holder basket crate caddy quiver")
+"""Holders without doors and drawers, so that *with* says what is in them: *a rack with four test tubes*."""
+
 _PATTERNS = word_set("stripe dot spot flower letter word number picture initial star pattern figure line")
 """Nouns of what can be painted on a thing."""
 
@@ -615,7 +618,7 @@ class Relations(Mentions):
             self._pair(held, "on", subject, False)
         elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
             self._pair(held, "inside", subject, False)
-        elif noun in VESSELS - HOLDERS - _TOLD_APART and "with" in words and _are_contents(held, subject):
+        elif noun in VESSELS - HOLDERS - _TOLD_APART | _RACKS and "with" in words and _are_contents(held, subject):
             self._pair(held, "inside", subject, False)  # 'a bowl with apples'
         elif not {"with", "without"}.isdisjoint(words):  # what a thing has may be a part of it
             self._add("near", (held,), (subject,), how=self._guessed(Guess.ACCOMPANIED))

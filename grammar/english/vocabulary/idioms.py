@@ -7,6 +7,7 @@ IDIOMS = tuple(
     for phrase in (
         "above all",
         *("thank heaven", "thank heavens", "thank god", "thank goodness", "heaven knows", "god knows", "as ever"),
+        *("good morning", "good afternoon", "good evening", "good day"),
         *("as you know", "mind you", "needless to say", "so to speak", "if you like", "as you see", "as you can see"),
         *("thank you for", "thanks for", "many thanks for", "of all things", "believe it or not", "strange to say"),
         *(

@@ -222,6 +222,12 @@ def test_parts_and_bounds_of_groups(text: str, facts: set[str]) -> None:
     assert asserted(text) == facts
 
 
+def test_what_a_thing_is_made_of_has_the_colour_of_its_material() -> None:
+    assert asserted("A jug of green glass is behind the box.") == {
+        "material(jug, 'glass')", "colour(jug, 'green')", "behind(jug, box)"
+    }  # fmt: skip
+
+
 def test_half_a_dozen_is_six() -> None:
     assert "count(egg_1, egg_2, egg_3, egg_4, egg_5, egg_6, '6')" in asserted("Half a dozen eggs are in the box.")
 

@@ -430,7 +430,8 @@ def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
                 holds = replace(be, type="TVERB", value=replace(be.value, lemma="hold", kind="transitive", form="s"))
                 rest = [] if place < i else chunks[place + 3 :]
                 return [*chunks[: min(place, i)], chunks[place], holds, *_with_exceptions([*things, *rest])]
-        bare = excepts and type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in JOINT_TYPES | {""}
+        bare = type_at(chunks, i + 1) == "NP" and type_at(chunks, i + 2) in JOINT_TYPES | {""}
+        bare = bare and (excepts or chunk.type == "BUT")  # 'nothing is on it but the clock'
         first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
         nothing = type_at(chunks, first) == "NP" and chunks[first].value.pronoun == "nothing"
         if bare and nothing and type_at(chunks, first + 1) in FINITE and chunks[first + 1].value.modal is None:

@@ -25,7 +25,7 @@ _NAMES = frozenset({"NP", "ADVERB", "ADJP", "CUT", "NOT", "UNKNOWN"})
 
 _ENDEARMENTS = word_set(
     "darling dear dearest love sweetheart honey mum mom mummy mommy dad daddy gran grandma grandpa son daughter mate"
-    " buddy guys folks everyone all team sir madam ladies gentlemen kids boys girls"
+    " buddy guys folks everyone all team sir madam ladies gentlemen kids boys girls class students colleagues friends"
 )
 """Nouns by which a person is spoken to."""
 

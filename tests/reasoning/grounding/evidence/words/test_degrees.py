@@ -175,7 +175,7 @@ def test_boxes_that_are_not_finite_are_refused(bad: float) -> None:
 
 
 def test_a_box_inside_out_is_refused() -> None:
-    with pytest.raises(GraphError, match="below its least"):
+    with pytest.raises(GraphError, match="lower corner of box 0 must not be above"):
         pair_geometry(np.array([[[1.0, 0.0], [0.0, 1.0]]]))
 
 
