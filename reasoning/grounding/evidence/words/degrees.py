@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel, RelationModels, Term
 from deixis.ontology.relations.relation import Reading, Relation
 from deixis.reasoning.geometry.pairs import PairGeometry
-from deixis.reasoning.grounding.evidence.words.meaning import own_frame_model
-from deixis.reasoning.grounding.evidence.words.pair_features import UNKNOWN_AIM, View, own_frame, view
+from deixis.reasoning.grounding.evidence.words.meaning import beneath_model, own_frame_model
+from deixis.reasoning.grounding.evidence.words.pair_features import UNKNOWN_AIM, View, beneath, own_frame, view
 
 Array = NDArray[np.float64]
 
@@ -220,6 +220,14 @@ class WordDegrees:
             self._found[word] = word_degree(self._pairs, word, self._models) if inverse is None else inverse.T
         return self._found[word]
 
+    @cached_property
+    def _beneath(self) -> Array:
+        """Degrees of what stands below a thing, between its legs, shape (n, m); 0 without heights."""
+        features = beneath(self._pairs)
+        if features is None:
+            return np.zeros((len(self._pairs.boxes), len(self._pairs.objects)))
+        return degree_of_view(beneath_model(), features)
+
     def held_by_front(self, word: str) -> NDArray[np.bool_]:
         """Return the pairs for which *in front of* or *behind* holds by the front of the object.
 
@@ -262,7 +270,8 @@ class WordDegrees:
         """Return the degree of a relation.
 
         In the exact reading, the word must fit better than the other nine: the result is its degree times the ratio of
-        its degree to the best one.
+        its degree to the best one. In the wide reading, *under* also fits what stands between the legs of a thing,
+        which is not on it.
 
         Parameters
         ----------
@@ -282,7 +291,7 @@ class WordDegrees:
         self._models.of(relation)
         own = self.of_word(relation.word)
         if relation.reading is not Reading.EXACT:
-            return own
+            return np.maximum(own, self._beneath) if relation.word == "under" else own
         best = np.max([self.of_word(word) for word in FAMILIES], axis=0)
         exact: Array = own * (own / best)
         return exact

@@ -99,6 +99,27 @@ def own_frame_model() -> RelationModel:
     return RelationModel("own frame", (aim_term(np.pi / 4, CHANCE["facing"]), gap), OUTLIERS, CHANCE["facing"])
 
 
+@lru_cache(maxsize=1)
+def beneath_model() -> RelationModel:
+    """Return the model of *under* for what stands below a thing, between its legs: *the bin is under the desk*.
+
+    Returns
+    -------
+    RelationModel
+        Model of a subject within the object's outline that is not higher than the object and reaches down beside it,
+        computed once.
+    """
+    terms = (
+        Term("across", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
+        Term("along", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
+        # one half: higher than the object by an eighth of its height
+        Term("roof", (-0.5, -0.125, 0.0, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
+        # prototype: in the lower quarter of the object; one half: at half of its height, as what lies in a tray
+        Term("floor", (0.0, 0.25, 0.5, 1.0), (0.0, 0.0, BORDER, EXTREME), Trend.FALLING),
+    )
+    return RelationModel("beneath", terms, OUTLIERS, CHANCE["containment"])
+
+
 def direction_terms(half: float, abreast: Trend) -> tuple[Term, ...]:
     """Return the terms of a direction word that fits half as well at ``half`` radians from its axis.
 

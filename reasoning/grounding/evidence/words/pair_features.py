@@ -322,6 +322,34 @@ def _containment(pairs: PairGeometry) -> View:
     return found
 
 
+def beneath(pairs: PairGeometry) -> View | None:
+    """Return the features of a subject that stands below an object, between its legs; None without heights.
+
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs of n subjects and m objects.
+
+    Returns
+    -------
+    View or None
+        Shares of the subject within the object, ``across`` and ``along``; how far its top is below that of the object
+        (``roof``) and its underside above that of the object (``floor``), as shares of the object's height in [-1, 1].
+        Arrays of shape (n, m).
+    """
+    if pairs.boxes.shape[2] < 3:
+        return None
+    height = _extents(pairs.objects)[None, :, 2]
+    found = {"across": pairs.inside[:, :, 0], "along": pairs.inside[:, :, 1]}
+    offsets = {
+        "roof": pairs.objects[None, :, 1, 2] - pairs.boxes[:, None, 1, 2],
+        "floor": pairs.boxes[:, None, 0, 2] - pairs.objects[None, :, 0, 2],
+    }
+    for name, offset in offsets.items():
+        found[name] = np.clip(np.divide(offset, height, out=np.zeros_like(offset), where=height > 0), -1.0, 1.0)
+    return found
+
+
 def _alignment(pairs: PairGeometry) -> View:
     least = np.abs(pairs.offset).min(axis=2)
     return {"lateral": least / (1 + least)}
