@@ -321,6 +321,9 @@ class RelatorChunker:
         )
 
     def _measure(self, at: int) -> Chunk | None:
+        if self.norms[at : at + 4] == ["at", "a", "distance", "of"]:
+            length = self._measure(at + 4)  # 'at a distance of 20 cm'
+            return None if length is None else Chunk(length.type, at, length.end, length.value)
         number = self.nouns.number(at)
         i, hedge, bound = at, None, None
         while number is None and self.norms[i] in _MEASURE_WORDS:

@@ -423,6 +423,13 @@ class Builder(Transformer[Any, Built]):
         if last_said and last_said[0].relation == "upside_down" and "that" not in last_said[0].adverbs:
             bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
             noun, extra = Noun(bare, noun.extra), (*last_said, *extra)  # 'lay the cards beside the board face down'
+        of = noun.phrase.of if noun.phrase.head in _SIDES else None
+        known = of or noun.phrase
+        directed = (relation in _DIRECTIONS or of is not None) and known.determiner == "the"
+        if directed and known.predicates and _is_on_new(known.predicates[-1]):  # 'it lies left of the radio on a mat'
+            extra = (known.predicates[-1], *extra)
+            known = replace(known, predicates=known.predicates[:-1])
+            noun = Noun(known if of is None else replace(noun.phrase, of=known), noun.extra)
         if other is not None:
             span, extra = union(span, other.phrase.span), (*extra, *other.extra)
         last_end = noun.phrase.members[-1] if relation == "between" and noun.phrase.members else None
@@ -669,7 +676,7 @@ class Builder(Transformer[Any, Built]):
         told = tuple(flat(verb))
         if verb.group.modal in _OBLIGING:  # 'the lid, which needs to be removed'
             told = tuple(p for p in told if p.relation != "state")
-        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation == "upside_down" else p for p in told)
+        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation in _OF_ITS_OWN else p for p in told)
 
     def reduced(self, rel: Chunk, predications: tuple[Predication, ...]) -> tuple[Predicate, ...]:
         """Return the predicates of *that next to the tray*."""
@@ -853,6 +860,13 @@ def _place_with(noun: NounPhrase, mods: tuple[Predicate, ...]) -> Noun:
     return Noun(noun, mods)
 
 
+def _is_on_new(predicate: Predicate) -> bool:
+    """Return True for a place on or in a thing that is new, which does not tell known things apart: *on a mat*."""
+    on = predicate.relation in ("on", "inside") and predicate.positive and not predicate.of_one
+    things = predicate.arguments
+    return on and "that" not in predicate.adverbs and len(things) == 1 and things[0].determiner in ("a", "an")
+
+
 def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     """Separate *with its spout pointing to the window* from a place: *its* is the subject's."""
     phrase = noun.phrase
@@ -983,6 +997,12 @@ _FASTENING = word_set(
 )
 """Commands in which *with* names a tool: *secure it with two bolts*."""
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
+_OF_ITS_OWN = frozenset({"upside_down", "on", "inside"})
+"""Relations that a relative clause states of its noun, and that a phrase may state of the subject before."""
+
+_DIRECTIONS = frozenset({"left", "right", "in_front", "behind", "near", "next_to"})
+"""Relations after whose known object a second place is the subject's."""
+
 _SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
 _AMOUNTS = word_set(
     "length layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering"
