@@ -252,7 +252,10 @@ class RelatorChunker:
                 noted = last is not None and isinstance(last.value, NounPhrase) and ends and _names_part(last.value)
                 if not aims and not noted:
                     return None
-            if alone[1].relation == "there" and self._previous() not in FINITE | {"ADV", "ADVERB", "NP", "PART"}:
+            # 'it is in the kitchen, not here'
+            denied = self.norms[at - 1 : at + 1] == ["not", "here"] and self.norms[at + 1] in CLAUSE_ENDS
+            follows = self._previous() in FINITE | {"ADV", "ADVERB", "NP", "PART"}
+            if alone[1].relation == "there" and not denied and not follows:
                 return None
             return alone[0], "ADV", alone[1]
         return None

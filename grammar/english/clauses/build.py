@@ -425,8 +425,8 @@ class Builder(Transformer[Any, Built]):
             noun, extra = Noun(bare, noun.extra), (*last_said, *extra)  # 'lay the cards beside the board face down'
         of = noun.phrase.of if noun.phrase.head in _SIDES else None
         known = of or noun.phrase
-        directed = (relation in _DIRECTIONS or of is not None) and known.determiner == "the"
-        if directed and known.predicates and _is_on_new(known.predicates[-1]):  # 'it lies left of the radio on a mat'
+        is_known = (relation in _DIRECTIONS or of is not None) and known.determiner == "the"
+        if is_known and known.predicates and _is_on_new(known.predicates[-1]):  # 'it lies left of the radio on a mat'
             extra = (known.predicates[-1], *extra)
             known = replace(known, predicates=known.predicates[:-1])
             noun = Noun(known if of is None else replace(noun.phrase, of=known), noun.extra)

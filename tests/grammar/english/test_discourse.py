@@ -228,6 +228,11 @@ def test_what_a_thing_is_made_of_has_the_colour_of_its_material() -> None:
     }  # fmt: skip
 
 
+def test_what_is_elsewhere_and_not_here_is_absent() -> None:
+    assert "count(knife, '0')" in asserted("The knife is in the kitchen, not here.")
+    assert "count(knife, '0')" not in asserted("The knife is on the tray, not there.")
+
+
 def test_half_a_dozen_is_six() -> None:
     assert "count(egg_1, egg_2, egg_3, egg_4, egg_5, egg_6, '6')" in asserted("Half a dozen eggs are in the box.")
 
