@@ -151,6 +151,9 @@ class Relations(Mentions):
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
             return  # 'fold it into a rectangle'
+        if relation == "inside" and self.how.positive and any(self._is_town(a) for a in predicate.arguments):
+            self._is_not_here(subject)  # 'the knife is in London'
+            return
         degree = self.text[: predicate.span[0]].casefold().split()[-1:]
         if relation in ("near", "far") and degree in (["equally"], ["as"]):
             return  # 'equally far from the cross' compares, and says no distance
@@ -307,6 +310,14 @@ class Relations(Mentions):
         value = OPPOSITES.get(here[-1].value or "")
         self._add(here[-1].relation, (subject,), here[-1].arguments, value=value)
         return True
+
+    def _is_town(self, phrase: NounPhrase) -> bool:
+        """Return True for a name in capitals that is not a known noun, after *in*: a place that is not on the table."""
+        words = self.text[slice(*phrase.span)].split()
+        named = bool(words) and not phrase.known and phrase.determiner is None and phrase.owner is None
+        bare = named and not (phrase.adjectives or phrase.predicates or phrase.members or phrase.count)
+        after_in = self.text[: phrase.span[0]].casefold().split()[-1:] == ["in"]
+        return bare and after_in and all(word[0].isupper() and not word.isupper() for word in words)
 
     def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
         same_group = subject.itself.group is not None and subject.itself.group is other.itself.group
