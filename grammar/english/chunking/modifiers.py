@@ -177,9 +177,9 @@ class ModifierFinder(NounFinder):
                 telegraphic = after in ("upper", "lower", "top", "bottom", "far", "near") and (
                     self.norms[at + 2] in ("left", "right") and not determined
                 )
-                if (is_material_noun(norm) and (after in ("left", "right") or telegraphic)) or self._letter(
-                    at + 1
-                ) is not None:
+                beside = after in ("next", "close", "near") and self.norms[at + 2] == "to"  # 'the tin next to it'
+                placed = after in ("left", "right") or telegraphic or beside
+                if (is_material_noun(norm) and placed) or self._letter(at + 1) is not None:
                     return False
                 if norm in ("left", "right") and after in ("of", "to", "from"):
                     return False

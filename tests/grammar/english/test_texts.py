@@ -290,6 +290,7 @@ def asserted(text: str) -> list[str]:
         ("The device under test lies in front of the box on a mat.", ["in_front(device, box)", "on(device, mat)"]),
         ("The cup is behind the jug that stands on a box.", ["on(jug, box)", "behind(cup, jug)"]),
         ("Put the cup to the right of the plate on a saucer.", ["right(cup, plate)", "on(cup, saucer)"]),
+        ("Pins are in the small tin next to the box.", ["next_to(tin, box)", "inside(pins, tin)"]),
         ("The box is empty except for a ball and the clock.", ["inside(ball, box)", "inside(clock, box)"]),
         ("Apart from the spoon, the saucer is bare.", ["on(spoon, saucer)"]),
         ("The shelf is clear aside from the jug at its left end.", ["end(jug, shelf, 'left')"]),
