@@ -174,12 +174,17 @@ def _support(pairs: PairGeometry) -> View:
     return found
 
 
+def _quotient(lengths: Array, units: Array) -> Array:
+    """Return lengths in units of other lengths; 0 where the unit is 0."""
+    result: Array = np.divide(lengths, units, out=np.zeros(np.broadcast(lengths, units).shape), where=units > 0)
+    return result
+
+
 def _share_of_difference(subjects: Array, objects: Array) -> Array:
     """Return (a - b) / (a + b) of the lengths of subjects (n,) and objects (m,), in [-1, 1], above 0 if a is longer."""
     a, b = subjects[:, None], objects[None, :]
     total = a + b
-    result: Array = np.divide(a - b, total, out=np.zeros(np.broadcast(a, b).shape), where=total > 0)
-    return result
+    return _quotient(a - b, total)
 
 
 def _extents(boxes: Array) -> Array:
@@ -315,10 +320,10 @@ def _containment(pairs: PairGeometry) -> View:
     if pairs.boxes.shape[2] == 3:
         deep = pairs.objects[None, :, 1, 2] - pairs.boxes[:, None, 0, 2]
         height = _extents(pairs.objects)[None, :, 2]
-        found["depth"] = np.clip(np.divide(deep, height, out=np.zeros_like(deep), where=height > 0), -1.0, 2.0)
+        found["depth"] = np.clip(_quotient(deep, height), -1.0, 2.0)
         lower = np.minimum(height, _extents(pairs.boxes)[:, None, 2])
         above = pairs.boxes[:, None, 0, 2] - pairs.objects[None, :, 0, 2]
-        found["floor"] = np.clip(np.divide(above, lower, out=np.zeros_like(above), where=lower > 0), -1.0, 1.0)
+        found["floor"] = np.clip(_quotient(above, lower), -1.0, 1.0)
     return found
 
 
@@ -346,7 +351,7 @@ def beneath(pairs: PairGeometry) -> View | None:
         "floor": pairs.boxes[:, None, 0, 2] - pairs.objects[None, :, 0, 2],
     }
     for name, offset in offsets.items():
-        found[name] = np.clip(np.divide(offset, height, out=np.zeros_like(offset), where=height > 0), -1.0, 1.0)
+        found[name] = np.clip(_quotient(offset, height), -1.0, 1.0)
     return found
 
 
@@ -364,8 +369,7 @@ def _middle_offset(pairs: PairGeometry) -> Array:
     """Return the offset of the undersides in units of the mean height."""
     heights = (_extents(pairs.boxes)[:, None, 2] + _extents(pairs.objects)[None, :, 2]) / 2
     off = pairs.boxes[:, None, 0, 2] - pairs.objects[None, :, 0, 2]
-    result: Array = np.divide(off, heights, out=np.zeros_like(off), where=heights > 0)
-    return result
+    return _quotient(off, heights)
 
 
 GRADED_VIEWS: Mapping[str, Callable[[PairGeometry], View]] = {
