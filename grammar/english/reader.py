@@ -208,7 +208,10 @@ class _Writer:
         return ReadSentence(
             text=" ".join(sentence.text.split()),
             span=sentence.span,
-            paraphrase=paraphrase([fact for fact in facts if fact.confidence >= MIN_STATED], surface.noun if surface is not None else "table"),
+            paraphrase=paraphrase(
+                [fact for fact in facts if fact.confidence >= MIN_STATED],
+                surface.noun if surface is not None else "table",
+            ),
             understood=sentence.understood,
             words=sentence.words,
             question=question,

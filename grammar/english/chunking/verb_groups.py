@@ -112,7 +112,7 @@ class VerbChunker(RelatorChunker):
             elif norm in NEGATIONS and i > first:
                 positive = not positive if norm != "nor" else positive
             elif i > first and (
-                ((norm in ADVERBS or norm in HEDGES) and self._goes_on(i + 1))
+                ((norm in ADVERBS or norm in HEDGES or norm.endswith("ly")) and self._goes_on(i + 1))
                 or (verb == "be" and norm in HEDGES and norm not in _HEDGES_OF_PLACES)
             ):
                 adverbs.append(norm)
