@@ -743,7 +743,7 @@ _TENDING = {
 _GOING = word_set("stand sit step walk go kneel stay wait look")
 """Verbs of commands that take no object."""
 
-_INTRANSITIVE = word_set("lie sit kneel come go rise")
+_INTRANSITIVE = word_set("lie sit kneel come go rise live dwell")
 """Verbs of a state or a motion without an object; before a noun phrase they come before their subject."""
 
 _CROSSING = word_set("move go walk come head step turn")

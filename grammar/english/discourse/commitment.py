@@ -33,7 +33,8 @@ HABIT = re.compile(
 """Words of what was done again and again, or at an earlier time."""
 WHILE_DOING = re.compile(
     r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed"
-    r"|(?:setting|laying|arranging|preparing|packing|assembling|building|installing|placing|positioning|organi[sz]ing"
+    r"|(?:setting|laying|arranging|preparing|packing|assembling|building|installing|placing|positioning|organi[sz]ing|loading|filling|stacking"
+    r"|storing|hanging|mounting|stocking|planting|plating|packing|unpacking|moving"
     r"|styling|decorating)\b)[a-z]+ing\b[^,]*,",
     re.IGNORECASE,
 )

@@ -296,7 +296,7 @@ class Mentions(Drafting, ABC):
         if phrase.of is not None and last_word(phrase.head) in _SIGNS:
             phrase = phrase.of  # 'no sign of the pen'
         entity = self.references.find(replace(phrase, determiner="the", predicates=()))
-        if entity is not None and phrase.head not in _NEEDS:
+        if entity is not None and phrase.head not in _NEEDS and self.how.condition is None:
             entity.absent = True
             self._add("count", (entity,), (), value="0", how=replace(self.how, positive=True, past=False))
             self.references.recent.insert(0, Focus(entity, [], None, self.how.sentence))

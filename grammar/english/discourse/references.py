@@ -391,11 +391,13 @@ class References:
 
     def _earlier(self, phrase: NounPhrase) -> Entity | None:
         """Return the earlier object with the same noun, unless the phrase introduces another one."""
+        latest_first = self._named_like(phrase.head)
+        yours = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"we"}  # 'your eight pawns'
+        same = yours and any(entity.size == phrase.count and entity.noun == phrase.head for entity in latest_first)
         if phrase.determiner in ("another", "a", "an", "some", "no") or (
-            phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"}
+            phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"} and not same
         ):
             return None
-        latest_first = self._named_like(phrase.head)
         if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[0]] + self.words(phrase)):
             return None
         if any(a.word == "matching" for a in phrase.adjectives):

@@ -107,7 +107,7 @@ _LATERAL = frozenset({"left", "right"})
 """Relations after which *the other side* of a thing is the opposite one."""
 
 
-_ON_A_SIDE = re.compile(r"(?:on|at)\b.*\bside\s+of\b")
+_ON_A_SIDE = re.compile(r"\b(?:on|at)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
 """Words by which a side is a part of the surface, and not a direction from it."""
 
 
@@ -302,7 +302,7 @@ class Relations(Mentions):
             if (
                 on_it
                 and relation in _LATERAL
-                and _ON_A_SIDE.match(written)
+                and _ON_A_SIDE.search(written)
                 and last_word(subject.noun) not in FURNITURE
             ):
                 self._add("part", (subject,), (), value=relation)  # 'on the left side of the tray'

@@ -244,6 +244,13 @@ def test_postures_and_persons(text: str, expected: list[str]) -> None:
         ("Most traditionally the napkin lies under the fork.", ["under(napkin, fork)"]),
         ("In some cultures, the napkin is under the fork. The cup is left of it.", ["left(cup, napkin)"]),
         ("The jug is on the shelf (easy to reach). The cup is inside the jug.", ["on(jug)", "inside(cup, jug)"]),
+        ("The proper place for the fork is to the left of the plate.", ["left(fork, plate)"]),
+        ("Glasses should be facing down on the red mat.", ["facing(glasses, 'down')", "on(glasses, mat)"]),
+        ("Below the mirror, in the cupboard, live the towels.", ["below(towels, mirror)", "inside(towels, cupboard)"]),
+        ("The cup is on the mat. If you serve bread and there is no mat, put it behind the jug.", ["on(cup, mat)"]),
+        ("Two pawns are behind the king. Move your two pawns in front of the queen.",
+         ["behind(pawn_1, king)", "behind(pawn_2, king)", "in_front(pawn_1, queen)", "in_front(pawn_2, queen)"]),
+        ("When loading the rack, put the cups on the red mat.", ["on(cups, mat)"]),
         ("The clamp is near the assembly inside the crate.", ["inside(assembly, crate)", "near(clamp, assembly)"]),
     ],
 )  # fmt: skip
