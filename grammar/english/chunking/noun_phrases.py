@@ -211,6 +211,7 @@ class NounChunker(ModifierFinder):
                         return None
             elif (
                 self.is_noun(at + 1)
+                or self._nouns.knows(f"{after} {self.norms[at + 2]}")
                 or self.number(at + 1) is not None
                 or after in ORDINALS
                 or after == "very"

@@ -76,7 +76,19 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
         p.relation == "with" and all(a.predicates and last_word(a.head) not in PARTS for a in p.arguments)
         for p in phrase.predicates
     )  # 'in front of the guest with a fork on the left'
-    return (around and bare) or on_it or spots or (wide and (bare or beside)) or flat or amid or own or stuff or placed
+    measured = entity.role is Role.SURFACE and all(p.relation.startswith("distance") for p in phrase.predicates)
+    return (
+        (around and bare)
+        or measured
+        or on_it
+        or spots
+        or (wide and (bare or beside))
+        or flat
+        or amid
+        or own
+        or stuff
+        or placed
+    )
 
 
 COMPARTMENTS = frozenset(

@@ -430,6 +430,10 @@ class References:
                 continue  # 'the two rails' after 'a rail'
             if self._is_further(phrase, entity) or _is_told_apart(phrase, entity):
                 continue
+            alone = not (entity.members or entity.plural or entity.single or entity.group is not None)
+            named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
+            if alone and phrase.plural and phrase.count is None and not named:
+                continue  # 'the drums' after 'the bass drum'
             kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
             if kind and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'towels' after 'a towel'

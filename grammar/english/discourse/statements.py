@@ -28,7 +28,7 @@ from deixis.grammar.english.vocabulary.nouns import (
 )
 from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
-from deixis.grammar.english.vocabulary.verbs import verb_forms
+from deixis.grammar.english.vocabulary.verbs import PLACING_VERBS, verb_forms
 from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
@@ -80,6 +80,16 @@ def _is_all_else(predicate: Predicate) -> bool:
         and not a.head and a.of is None
         for a in rest
     )  # fmt: skip
+
+
+def _is_placed(value: str) -> bool:
+    """Return True for the participle of a verb that puts things somewhere: *placed* of *is best placed near it*."""
+    form = verb_forms().get(value)
+    return form is not None and form.lemma in NOT_STATES | PLACING_VERBS and form.lemma not in _SEEN_ON_THINGS
+
+
+_SEEN_ON_THINGS = frozenset({"stack", "hang", "roll", "turn", "open"})
+"""Such verbs whose participles tell a state that can be seen."""
 
 
 class Statements(Relations):
@@ -178,6 +188,8 @@ class Statements(Relations):
         elif relation in ("upside_down", "empty", "open", "closed"):
             value = None
         elif value is None or relation in ("other", "position") or value in NOT_STATES:
+            return
+        elif relation == "state" and _is_placed(value):
             return
         elif relation == "state" and ("being" in predicate.adverbs or not UNJOINED.isdisjoint(self.how.guesses)):
             return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state

@@ -87,6 +87,9 @@ posture: dock, hitch, tether, latch, snag, interleave, immerse, submerge, chuck,
 posture: toss, pop, plump, plant, deposit, dab, smear, hammer, tap, bung, whack, thumbtack, staple, stitch, peg
 transitive: span, adorn, grace, cradle, accommodate, sport, boast, crown, cap, skirt, fringe, ring
 other: fly flies flew flown flying, swim swims swam swum swimming, crawl, leap leaps leapt leapt leaping, jump
+other: unpack, unload, unhook, detach, disassemble, discard
+other: simmer, stir, whisk, knead, marinate, garnish, refrigerate, adjust, rotate, straighten, flatten, verify, confirm
+other: dispose, emphasize, emphasise, ensure, remind, imagine, disconnect, dismantle, vary, differ
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
 """
 

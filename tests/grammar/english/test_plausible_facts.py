@@ -251,6 +251,11 @@ def test_postures_and_persons(text: str, expected: list[str]) -> None:
         ("Two pawns are behind the king. Move your two pawns in front of the queen.",
          ["behind(pawn_1, king)", "behind(pawn_2, king)", "in_front(pawn_1, queen)", "in_front(pawn_2, queen)"]),
         ("When loading the rack, put the cups on the red mat.", ["on(cups, mat)"]),
+        ("A single stool is best placed opposite the window.", ["opposite(stool, window)"]),
+        ("The spoons are placed on the table 2 cm from the edge.", ["distance(spoons, 'edge', 0.02 m)", "on(spoons)"]),
+        ("Sofas should not be touching walls - particularly in large rooms.", ["not touching(sofas, walls)"]),
+        ("The bass drum is behind the jug. The cymbals are around the drums.",
+         ["behind(bass_drum, jug)", "around(cymbals, drums)"]),
         ("The clamp is near the assembly inside the crate.", ["inside(assembly, crate)", "near(clamp, assembly)"]),
     ],
 )  # fmt: skip

@@ -31,6 +31,9 @@ _LENGTHS = UNITS.keys() - HANDS | {"inche", "square"}
 _COMMENTING = frozenset({"make", "mean", "let", "allow", "cause", "give", "prevent", "explain", "save", "help", "seem"})
 """Verbs of *which* that comment on a whole clause."""
 
+_ABOVE_ALL = frozenset({"particularly", "especially", "mainly", "notably", "chiefly", "primarily"})
+"""Adverbs before a circumstance in which a statement holds above all."""
+
 _CASES = frozenset({"case", "event"})
 
 _CAUSING = word_set("ensure allow let make cause enable help prevent avoid give create provide leave keep")
@@ -420,6 +423,19 @@ def _comparison_apart(chunks: list[Chunk], at: int) -> Run | None:
     return end + 1, None
 
 
+def _emphasis(chunks: list[Chunk], at: int) -> Run | None:
+    """Find where something holds above all, at the end of a clause: *…, particularly in large rooms*."""
+    emphasized = type_at(chunks, at) == "ADVERB" and chunks[at].value in _ABOVE_ALL
+    if not emphasized or [type_at(chunks, at + k) for k in (-1, 1, 2)] not in (
+        ["COMMA", "PREP", "NP"], ["CUT", "PREP", "NP"],
+    ):  # fmt: skip
+        return None
+    if type_at(chunks, at + 3) not in ("", "CUT") or chunks[at + 2].value.determiner is not None:
+        return None
+    leave_out(chunks[at : at + 3], "where something holds above all does not say where it is")
+    return at + 3, None
+
+
 def _first_of_two_commands(chunks: list[Chunk], at: int) -> Run | None:
     """Find the first of two verbs with one object, which looks like a noun: *and pull and fold the corners …*."""
     types = [type_at(chunks, at + k) for k in range(-1, 4)]
@@ -555,7 +571,7 @@ def _replacement(chunks: list[Chunk], at: int) -> Run | None:
 
 REWRITES = (
     without(_framing), without(_manner), without(_consequence), without(_compared_quality), without(_examples),
-    without(_comparison_apart),
+    without(_comparison_apart), without(_emphasis),
     without(_first_of_two_commands), without(_used_things), without(_followers),
     without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement),
     without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),
