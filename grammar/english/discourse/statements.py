@@ -187,9 +187,12 @@ class Statements(Relations):
             relation, value = ("nested" if value.startswith("nest") else "stacked"), None
         elif relation in ("upside_down", "empty", "open", "closed"):
             value = None
-        elif value is None or relation in ("other", "position") or value in NOT_STATES:
-            return
-        elif relation == "state" and _is_placed(value):
+        elif (
+            value is None
+            or relation in ("other", "position")
+            or value in NOT_STATES
+            or (relation == "state" and _is_placed(value))
+        ):
             return
         elif relation == "state" and ("being" in predicate.adverbs or not UNJOINED.isdisjoint(self.how.guesses)):
             return  # 'it is being cleaned' and 'it is reflecting the lamp' tell what happens, and not a state
