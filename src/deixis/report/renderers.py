@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import html
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -380,9 +379,9 @@ def to_png(answer: Answer) -> bytes | None:
         figure = plot(answer, None)
     except DeixisError:
         return None
-    target = io.BytesIO()
-    figure.savefig(target, format="png", dpi=110)
-    return target.getvalue()
+    from deixis.plots.displayed_figure import png_of
+
+    return png_of(figure)
 
 
 def to_html(answer: Answer) -> str:
