@@ -116,8 +116,8 @@ class _Writer:
         for entity in [*discourse.references.entities, *used]:
             for leaf in entity.leaves():
                 order[leaf] = None
-        told = {leaf for entity in used for leaf in entity.leaves()}
-        shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in told]
+        used_leaves = {leaf for entity in used for leaf in entity.leaves()}
+        shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in used_leaves]
         self.names = names_of(shown)
         self.declared: set[tuple[str, str]] = set()  # names with a declared kind or colour, and which of the two
 

@@ -330,7 +330,7 @@ def _doubt(scene: Scene, probabilities: Mapping[str, float], none: float) -> tup
     if len(named) == 1:
         return f"Do you mean {named[0]}?", f"only {probabilities[likely[0]]:.2f} sure that it points at {named[0]}"
     listed = f"{', '.join(named[:-1])} or {named[-1]}"
-    return f"Which one do you mean: {listed}?", "the gesture fits several things"
+    return f"Which one do you mean: {listed}?", f"points at {listed}"
 
 
 def _called(thing: PerceivedObject) -> str:

@@ -392,8 +392,8 @@ def _revised(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str])
         script = script_without(record, layout, chosen.all.sentence, knowledge.ontology)
         if script is None:
             continue
-        told, meaning = events.get(record.lesson, ()), knowledge.meaning_before(record.lesson)
-        lesson = lesson_of_script(script, record, record.engine, told, meaning)
+        own_events, meaning = events.get(record.lesson, ()), knowledge.meaning_before(record.lesson)
+        lesson = lesson_of_script(script, record, record.engine, own_events, meaning)
         gone += [record.lesson] if lesson is None else []
         revised += [] if lesson is None else [lesson]
     return gone, revised
