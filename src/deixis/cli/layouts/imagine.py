@@ -40,7 +40,7 @@ def imagine(
 ) -> None:
     """Lay an example table that satisfies a script, or print which facts allow no table (exit 1).
 
-    Each line has an object, its width and depth, the place of its near left corner in centimetres, and its kind.
+    Each line has an object, its width and depth, the place of its centre in centimetres, and its kind.
     """
     from deixis.deadline import Deadline
     from deixis.grammar.read import read_script_file

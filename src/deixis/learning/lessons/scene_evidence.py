@@ -258,7 +258,8 @@ def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
     default = ", the default" if scene.viewpoint == DEFAULT_VIEWPOINT else ""
     return (
         f"the viewpoint of the script is '{viewpoint}' and that of the scene is '{scene.viewpoint}'{default}: "
-        "left and right were compared without conversion",
+        "left and right were compared without conversion; if the scene was seen from "
+        f"""'{viewpoint}' too, write "viewpoint": "{viewpoint}" in it""",
     )
 
 
