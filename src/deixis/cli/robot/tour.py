@@ -19,8 +19,8 @@ PAGE = "index.html"
 
 LEAD = (
     "A person describes how a table is laid. A robot finds which perceived object each word means, learns, and checks "
-    "the next table. Each step below shows a command (dark), what it prints, and its picture if it has one. The commands "
-    "run in the folder of the repository."
+    "the next table. Each step below shows a command (dark), what it prints, and its picture if it has one. Run the "
+    "commands in the folder of the repository."
 )
 """First paragraph of the page."""
 
