@@ -31,6 +31,7 @@ from deixis.perception.scene import (
     PerceivedObject,
     Scene,
 )
+from deixis.text_files import no_such_file
 
 Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]
 """Function from parsed JSON, the name of the file and the chosen image (or None) to a scene; raises SceneError."""
@@ -134,7 +135,7 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
     except SceneError:
         raise
     except FileNotFoundError as error:
-        raise SceneError(f"{path}: there is no such file") from error
+        raise SceneError(no_such_file(path)) from error
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
