@@ -379,9 +379,7 @@ def to_png(answer: Answer) -> bytes | None:
         figure = plot(answer, None)
     except DeixisError:
         return None
-    from deixis.plots.displayed_figure import png_of
-
-    return png_of(figure)
+    return _function("plots.displayed_figure:png_of")(figure)  # type: ignore[no-any-return]
 
 
 def to_html(answer: Answer) -> str:
