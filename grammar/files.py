@@ -9,6 +9,7 @@ from pathlib import Path
 
 from deixis.grammar.errors import ScriptFileError, StatementError, shortened
 from deixis.ontology.graph.facts import Source
+from deixis.text_files import no_such_file
 
 MAX_FILE_BYTES = 4 * 1024 * 1024  # bytes of one file; reading it takes up to 150 times as much memory
 MAX_INCLUDE_DEPTH = 32  # maximum depth of nested includes
@@ -47,7 +48,7 @@ def read_text(path: Path, shown: str, undecoded: str = "strict") -> str:
         with path.open("rb") as file:
             data = file.read(MAX_FILE_BYTES + 1)
     except FileNotFoundError:
-        raise ScriptFileError(f"{shown}: there is no such file") from None
+        raise ScriptFileError(no_such_file(path, shown)) from None
     except ScriptFileError:
         raise
     except (OSError, ValueError) as error:

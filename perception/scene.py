@@ -28,6 +28,12 @@ if TYPE_CHECKING:
     from deixis.reasoning.geometry.rectangle import SceneRelations
     from deixis.reasoning.grounding.reference.features.room import Room
 
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
+"""Accepted units with their lengths in metres; pixels stay pixels."""
+
+UNNAMED = "<scene>"
+"""Name in messages of a scene without a file."""
+
 
 @dataclass(frozen=True, slots=True)
 class OrientedBox:
@@ -152,6 +158,9 @@ CANDIDATE_ROUNDING = 1e-3
 
 MAX_COORDINATE = 1e9
 """Maximum absolute value of a coordinate, in metres or pixels."""
+
+DEFAULT_VIEWPOINT = "chair"
+"""Viewpoint of a scene that states none."""
 
 UNKNOWN_VIEWPOINT = "unknown"
 """Viewpoint of a scene whose x axis does not point to the right of any viewer."""
@@ -324,9 +333,9 @@ class Scene(Answer):
     Raises
     ------
     SceneError
-        If the viewer stands in the middle of the scene, two objects share an id, a corner is not finite, a lower corner
-        is above the upper one, a colour or a confidence is out of range, a front has no direction, or 2-D and 3-D boxes
-        are mixed.
+        If the unit is another one, the viewer stands in the middle of the scene, two objects share an id, a corner is
+        not finite, a lower corner is above the upper one, a colour or a confidence is out of range, a front has no
+        direction, or 2-D and 3-D boxes are mixed.
 
     Examples
     --------
@@ -335,7 +344,7 @@ class Scene(Answer):
     >>> scene.ids, scene.unit, scene.viewpoint
     (('o1',), 'm', 'chair')
     >>> scene.boxes.tolist(), scene.summary()
-    ([[[0.0, 0.0], [0.03, 0.2]]], '<scene>: 1 object, 1 labelled, 2-D boxes in m, seen from the chair')
+    ([[[0.0, 0.0], [0.03, 0.2]]], '1 object, 1 labelled, 2-D boxes in m, seen from the chair')
     >>> scene.without_labels()["o1"].label is None
     True
 
@@ -353,9 +362,9 @@ class Scene(Answer):
 
     objects: tuple[PerceivedObject, ...]
     frame: str = "table"
-    viewpoint: str = "chair"
+    viewpoint: str = DEFAULT_VIEWPOINT
     unit: str = "m"
-    file: str = field(default="<scene>", compare=False)
+    file: str = field(default=UNNAMED, compare=False)
     detection: Detected | None = field(default=None, compare=False, repr=False)
     speaker: tuple[float, float] | None = None
     addressee: tuple[float, float] | None = None
@@ -383,6 +392,10 @@ class Scene(Answer):
                     if thing.oriented is not None:
                         require_fields(thing.oriented)
                 raise
+        if self.unit not in ("m", "px"):
+            raise SceneError(
+                f"{self.file}: `unit` of a Scene must be 'm' or 'px', got '{self.unit}'; convert the boxes"
+            )
         if self.viewer is not None and self.objects and not any(self._sight):
             raise SceneError(
                 f"{self.file}: 'viewpoint': the viewer must stand beside the middle of the scene, got"
@@ -405,7 +418,7 @@ class Scene(Answer):
         labels: Sequence[str | None] | None = None,
         confidences: Sequence[float] | None = None,
         frame: str = "table",
-        viewpoint: str = "chair",
+        viewpoint: str = DEFAULT_VIEWPOINT,
         unit: str = "m",
     ) -> Scene:
         """Return a scene of boxes in arrays.
@@ -427,7 +440,7 @@ class Scene(Answer):
         viewpoint
             Name of the side from which x points right and y away; ``unknown`` if the axes have no such meaning.
         unit
-            ``m``, or ``px`` for boxes in an image.
+            Unit of the lengths: ``m``, ``cm`` or ``mm``, which are converted to metres, or ``px`` (boxes in an image).
 
         Returns
         -------
@@ -437,7 +450,7 @@ class Scene(Answer):
         Raises
         ------
         SceneError
-            If shapes do not agree, a corner is not finite, or two objects share an id.
+            If shapes do not agree, a corner is not finite, two objects share an id, or the unit is unknown.
 
         Examples
         --------
@@ -449,7 +462,9 @@ class Scene(Answer):
         >>> turned.boxes[0].round(6).tolist()
         [[-0.05, -0.1, 0.0], [0.05, 0.1, 0.1]]
         """
-        low, high, oriented = _corners(min, max, centre, size, yaw)
+        if unit not in UNITS:
+            raise SceneError(f"`unit` must be one of {', '.join(UNITS)}, got '{unit}'")
+        low, high, oriented = _corners(min, max, centre, size, yaw, UNITS[unit])
         n = len(low)
         names = [f"o{i + 1}" for i in range(n)] if ids is None else [str(name) for name in ids]
         given = {"ids": names, "labels": labels, "confidences": confidences}
@@ -467,7 +482,7 @@ class Scene(Answer):
             )
             for i in range(n)
         ]
-        return cls(tuple(things), frame=frame, viewpoint=viewpoint, unit=unit)
+        return cls(tuple(things), frame=frame, viewpoint=viewpoint, unit="px" if unit == "px" else "m")
 
     @classmethod
     @checks_arguments
@@ -477,7 +492,7 @@ class Scene(Answer):
         *,
         ids: Sequence[str | int] | None = None,
         labels: Sequence[str | None] | None = None,
-        viewpoint: str = "chair",
+        viewpoint: str = DEFAULT_VIEWPOINT,
     ) -> Scene:
         """Return a scene of Open3D bounding boxes, point clouds or meshes.
 
@@ -589,7 +604,7 @@ class Scene(Answer):
 
     @classmethod
     @checks_arguments
-    def from_detections3d(cls, message: Any, *, viewpoint: str = "chair") -> Scene:
+    def from_detections3d(cls, message: Any, *, viewpoint: str = DEFAULT_VIEWPOINT) -> Scene:
         """Return the scene of a ``vision_msgs/Detection3DArray``.
 
         Parameters
@@ -639,12 +654,12 @@ class Scene(Answer):
         return write(self)
 
     def summary(self) -> str:
-        """Return one line with the file, the number of objects and the viewpoint.
+        """Return one line with the file, if there is one, the number of objects and the viewpoint.
 
         Examples
         --------
         >>> Scene.from_boxes(np.zeros((2, 3)), np.ones((2, 3)), labels=["cup", None]).summary()
-        '<scene>: 2 objects, 1 labelled, 3-D boxes in m, seen from the chair'
+        '2 objects, 1 labelled, 3-D boxes in m, seen from the chair'
         """
         labelled = sum(thing.label is not None for thing in self.objects)
         axes = f", {len(self.objects[0].minimum)}-D boxes in {self.unit}" if self.objects else ""
@@ -652,7 +667,8 @@ class Scene(Answer):
         side = "from an unknown side" if self.viewpoint == UNKNOWN_VIEWPOINT else f"from the {self.viewpoint}"
         if self.viewer is not None:
             side = f"from ({self.viewer[0]:g}, {self.viewer[1]:g})"
-        return f"{self.file}: {count(len(self.objects), 'object')}{labels}{axes}, seen {side}"
+        name = "" if self.file == UNNAMED else f"{self.file}: "
+        return f"{name}{count(len(self.objects), 'object')}{labels}{axes}, seen {side}"
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -1009,10 +1025,14 @@ def _corners(
     centre: ArrayLike | None,
     size: ArrayLike | None,
     yaw: ArrayLike | float | None,
+    scale: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], list[OrientedBox]]:
-    """Return lower and upper corners, shape (n, 2) or (n, 3), and the oriented boxes if 3-D boxes have angles."""
+    """Return lower and upper corners, shape (n, 2) or (n, 3), and the oriented boxes if 3-D boxes have angles.
+
+    All lengths are multiplied by ``scale``.
+    """
     if lower is not None and upper is not None and centre is None and size is None and yaw is None:
-        low, high = _rows(lower, "min"), _rows(upper, "max")
+        low, high = scale * _rows(lower, "min"), scale * _rows(upper, "max")
         if low.shape != high.shape:
             raise SceneError(f"`min` and `max` must have the same shape, got {low.shape} and {high.shape}")
         return low, high, []
@@ -1020,7 +1040,7 @@ def _corners(
         raise SceneError(
             "boxes must be given by `min` and `max`, or by `centre` and `size`, with `yaw` if they are turned"
         )
-    middle, sides = _rows(centre, "centre"), _rows(size, "size")
+    middle, sides = scale * _rows(centre, "centre"), scale * _rows(size, "size")
     if middle.shape != sides.shape:
         raise SceneError(f"`centre` and `size` must have the same shape, got {middle.shape} and {sides.shape}")
     if (sides < 0).any():

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "reference" / "ontology.md"
 DX = Namespace("https://w3id.org/deixis/onto#")
 CHARACTERISTICS = ("Functional", "InverseFunctional", "Transitive", "Symmetric", "Asymmetric", "Irreflexive")
-AXES = {DX.admitsOnX: "x", DX.admitsOnY: "y", DX.decidedOnZ: "z, where heights are known"}
+AXES = {DX.admitsOnX: "x", DX.admitsOnY: "y", DX.decidedOnZ: "z, with known heights and overlap on x and y,"}
 
 TEXT = """\
 <!-- Made from ontology/deixis.ttl and everyday.ttl by: python tools/ontology_page.py -->
@@ -29,7 +29,7 @@ TEXT = """\
 Its IRI is <{iri}>, its prefix `dx:` stands for <{base}>, its licence is <{license}>. Alignments to SOMA and DUL, SOSA
 and SSN, GeoSPARQL and IEEE 1872 are files of their own in `ontology/alignments/`; the ontology imports nothing.
 
-Add a word that scripts may use for a relation, a hedge, a kind of thing or a colour: add a `skos:altLabel` to its
+To add a word that scripts may use for a relation, a hedge, a kind of thing or a colour, add a `skos:altLabel` to its
 term.
 
 ## Relations, the wide reading
@@ -49,9 +49,9 @@ implies the wide relation of the same word.
 
 ## Relations, the graded reading
 
-Words beside the ten. A graded model says how well each fits a pair of boxes
+Further words. A graded model says how well each fits a pair of boxes
 (`reasoning/grounding/evidence/words/meaning.py`). The Allen relations are necessary for a word, not sufficient:
-inference uses them, inverses, symmetry, transitivity and broader words.
+inference uses them, and the inverses, symmetry, transitivity and broader words.
 
 {graded}
 
@@ -67,7 +67,7 @@ inference uses them, inverses, symmetry, transitivity and broader words.
 
 Usual sizes in centimetres: least, typical, greatest. The length is the longer side of the outline seen from above, the
 width the shorter one; for a circle, both are the diameter. Handles are not included: the reach is the distance by which
-they stick out, in percent of the length. A kind that is not listed has the size of its nearest broader kind.
+they stick out, as a percentage of the length. A kind that is not listed has the size of its nearest broader kind.
 
 {sizes}
 
@@ -143,7 +143,7 @@ def page() -> str:
             of_type(DX.Colour),
         ),
         classes=table(
-            {"class": label} | term | {"under": linked(RDFS.subClassOf)} | meaning,
+            {"class": label} | term | {"subclass of": linked(RDFS.subClassOf)} | meaning,
             [kind for kind in of_type(OWL.Class) if kind not in things],
         ),
         object_properties=properties(OWL.ObjectProperty),
@@ -161,7 +161,7 @@ def relation(term: URIRef) -> str:
     """Return the section of a relation: its definition, its parents, the Allen relations admitted, and its words."""
     symmetric = OWL.SymmetricProperty in graph[term : RDF.type]
     inverse = "symmetric" if symmetric else f"inverse {codes(inverses(term))}"
-    facts = [inverse, f"under {linked(RDFS.subPropertyOf)(term)}"]
+    facts = [inverse, f"sub-property of {linked(RDFS.subPropertyOf)(term)}"]
     if OWL.TransitiveProperty in graph[term : RDF.type]:
         facts.insert(1, "transitive")
     atoms = [f"on {axis} {admitted(list(graph[term:admits]))}" for admits, axis in AXES.items() if value(term, admits)]
@@ -191,7 +191,7 @@ def properties(kind: URIRef) -> str:
     def notes(term: URIRef) -> str:
         found = [name.lower() for name in CHARACTERISTICS if OWL[f"{name}Property"] in graph[term : RDF.type]]
         found += [f"inverse of {code(other)}" for other in inverses(term)]
-        return ", ".join(found + [f"under {code(other)}" for other in graph[term : RDFS.subPropertyOf]])
+        return ", ".join(found + [f"sub-property of {code(other)}" for other in graph[term : RDFS.subPropertyOf]])
 
     ends: Columns = {"domain": linked(RDFS.domain), "range": linked(RDFS.range)}
     columns = {"property": words, "term": code} | ends | {"": notes, "definition": text(SKOS.definition)}

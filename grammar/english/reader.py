@@ -117,9 +117,11 @@ class _Writer:
             for leaf in entity.leaves():
                 order[leaf] = None
         kept = [draft for draft in discourse.drafts if confidence(draft.how.guesses) >= MIN_STATED]
-        told, said = ({leaf for e in _entities(drafts) for leaf in e.leaves()} for drafts in (kept, discourse.drafts))
-        shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in said]
-        self.names = names_of([e for e in shown if e in told])
+        stated, written = (
+            {leaf for e in _entities(drafts) for leaf in e.leaves()} for drafts in (kept, discourse.drafts)
+        )
+        shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in written]
+        self.names = names_of([e for e in shown if e in stated])
         self.names_in_hints = {**names_of(shown), **self.names}
         self.declared: set[tuple[str, str]] = set()  # names with a declared kind or colour, and which of the two
 

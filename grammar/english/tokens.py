@@ -375,8 +375,8 @@ def _without_settings(words: list[Word]) -> None:
     if place < 2 or words[0].norm != "in" or words[1].norm not in ("a", "an"):
         return
     after = place + 1 + (words[place + 1].norm == "," if place + 1 < len(words) else 0)
-    told = any(word.norm in IS_FORMS | MODALS.keys() or word.norm in verb_forms() for word in words[after + 1 :])
-    if after < len(words) and told:
+    has_verb = any(word.norm in IS_FORMS | MODALS.keys() or word.norm in verb_forms() for word in words[after + 1 :])
+    if after < len(words) and has_verb:
         named = words[after].norm in DETERMINERS or words[after].norm in POSSESSIVES or after > place + 1
         del words[: after if named else 0]
 
@@ -671,7 +671,7 @@ def _with_commands_after_places(words: list[Word]) -> None:
             end -= 1
         elif end < verb:
             continue
-        told = end < verb
+        has_words_before_verb = end < verb
         first = end - 1
         while first > 0 and words[first - 1].norm not in (";", ":", ".", "and", "then", "("):
             first -= 1
@@ -684,7 +684,7 @@ def _with_commands_after_places(words: list[Word]) -> None:
         if not place or not _SAYS_MORE.isdisjoint(opening) or not IS_FORMS.isdisjoint(rest):
             continue
         marked = words[end - 1].norm == ","
-        if not told and (marked or words[end - 1].norm not in _POINTING | PLACE_NOUNS.keys()):
+        if not has_words_before_verb and (marked or words[end - 1].norm not in _POINTING | PLACE_NOUNS.keys()):
             continue
         comma = [] if marked else [Word(",", ",", words[end - 1].end, words[end - 1].end, False)]
         words[end:verb] = comma

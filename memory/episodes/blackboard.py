@@ -70,7 +70,7 @@ _sharing = threading.Lock()
 class Blackboard(Closing):
     """Fluents that one process owns, and its threads share.
 
-    Writes are atomic and have sequence numbers; readers see all of a write or nothing of it. Times are seconds since
+    Writes are atomic and have sequence numbers; a reader sees a whole write or none of it. Times are seconds since
     ``origin``.
 
     Examples

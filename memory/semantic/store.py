@@ -591,7 +591,7 @@ class SemanticMemory(Closing):
             if self._union is None:
                 self._union = default_graph(self.store)
             found = run_query(self._answer, sparql, self._union, QueryLimits(time_limit, memory_limit))
-            return replace(found, notes=notes_on(self.store, sparql))
+            return replace(found, notes=notes_on(self.store, sparql, found.empty))
 
     def incomplete_layouts(self, sparql: str) -> tuple[str, ...]:
         """Return the layouts whose implications a query asks for, and of which not all are stored.

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import CloudError
+from deixis.text_files import no_such_file
 
 MAX_BYTES = 2 * 2**30
 """Size of the largest file that is read, in bytes."""
@@ -130,7 +131,7 @@ def content_of(path: str | Path) -> Content:
     except IsADirectoryError:
         raise CloudError(f"{name}: this is a folder; give a point cloud or mesh file") from None
     except FileNotFoundError:
-        raise CloudError(f"{name}: there is no such file") from None
+        raise CloudError(no_such_file(path)) from None
     except OSError as error:
         raise CloudError(f"{name}: cannot be read: {error.strerror}") from error
     except ValueError as error:

@@ -36,7 +36,7 @@ from deixis.perception.detection.table.viewpoint import (
     verified_pose,
 )
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, OrientedBox, PerceivedObject, Scene
 
 BACKGROUND = -1
 """Label of a point that does not belong to an object."""
@@ -81,7 +81,7 @@ class Detection:
     shows: Shows = Shows.TABLE
     upright: bool = True
 
-    def scene(self, viewpoint: str = "chair", file: str = "<cloud>") -> Scene:
+    def scene(self, viewpoint: str = DEFAULT_VIEWPOINT, file: str = "<cloud>") -> Scene:
         """Return the objects as a scene, with their points in the frame of the table.
 
         Parameters

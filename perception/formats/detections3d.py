@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import SceneError
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, OrientedBox, PerceivedObject, Scene
 
 UPRIGHT_TOLERANCE = 1e-3
 """Maximum difference from 1 of the cosine between the third axis of an upright box and the vertical."""
 
 
-def scene_from_detections3d(message: Any, *, viewpoint: str = "chair", file: str = "<detections>") -> Scene:
+def scene_from_detections3d(message: Any, *, viewpoint: str = DEFAULT_VIEWPOINT, file: str = "<detections>") -> Scene:
     """Return the scene of a ``Detection3DArray``.
 
     Parameters

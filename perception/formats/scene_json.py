@@ -21,7 +21,17 @@ from deixis.perception.checks import MAX_SHOWN, mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.coco import coco_scene, is_coco
 from deixis.perception.formats.labelme import is_labelme, labelme_scene
-from deixis.perception.scene import PLACED_VIEWER, Heading, OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import (
+    DEFAULT_VIEWPOINT,
+    PLACED_VIEWER,
+    UNITS,
+    UNNAMED,
+    Heading,
+    OrientedBox,
+    PerceivedObject,
+    Scene,
+)
+from deixis.text_files import no_such_file
 
 Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]
 """Function from parsed JSON, the name of the file and the chosen image (or None) to a scene; raises SceneError."""
@@ -51,9 +61,6 @@ def annotation_reader(data: Any) -> Reader | None:
     """
     return next((reader for is_format, reader in FORMATS if is_format(data)), None)
 
-
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
-"""Accepted units with their lengths in metres; pixels stay pixels."""
 
 MAX_BYTES = 256 * 2**20
 
@@ -108,7 +115,7 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
     (0.2, 0.01)
     """
     if isinstance(source, Mapping):
-        return scene_from_dict(source, "<scene>", image)
+        return scene_from_dict(source, UNNAMED, image)
     if not isinstance(source, str | Path):
         raise SceneError(
             f"a scene must be read from a file or from parsed JSON, not from {type(source).__name__};"
@@ -128,7 +135,7 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
     except SceneError:
         raise
     except FileNotFoundError as error:
-        raise SceneError(f"{path}: there is no such file") from error
+        raise SceneError(no_such_file(path)) from error
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -175,7 +182,7 @@ def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Sce
     unit = text(found.get("unit", "m"), f"{file}: 'unit'")
     if unit not in UNITS:
         raise SceneError(f"{file}: unknown unit '{unit}'; use one of {', '.join(UNITS)}")
-    given = found.get("viewpoint", "chair")
+    given = found.get("viewpoint", DEFAULT_VIEWPOINT)
     viewer = _place(given, f"{file}: 'viewpoint'", UNITS[unit]) if isinstance(given, list | tuple) else None
     viewpoint = PLACED_VIEWER if viewer is not None else text(given, f"{file}: 'viewpoint'")
     scene = Scene(

@@ -117,8 +117,8 @@ def decided(
         width = first.spread.width
         unit = "thing" if width.over_things else "view"
         what = f"has one {unit}" if width.count == 1 else f"has no two {unit}s that differ"
-        whence = "the median ICD of the others" if first.spread.source is SpreadSource.POOLED else "a constant"
-        reasons.append(f"'{first.category}' {what}, so that D_C is divided by {whence}")
+        divisor = "the median ICD of the others" if first.spread.source is SpreadSource.POOLED else "a constant"
+        reasons.append(f"'{first.category}' {what}, so that D_C is divided by {divisor}")
     if not exact:
         reasons.append("the search for the nearest views was approximate")
     return Recognition(label, tuple(ranked), unknown, calibration, exact, tuple(reasons))

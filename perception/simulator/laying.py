@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
 from deixis.perception.simulator.meshes.blocks import CLOTH_CELL
 from deixis.perception.simulator.meshes.rays import RayCaster
 from deixis.perception.simulator.meshes.solids import moved
@@ -359,7 +359,7 @@ def top_under(things: Sequence[LaidThing], margin: float = MARGIN, colour: Colou
     return TableTop((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), colour=colour)
 
 
-def truth_scene(table: LaidTable, viewpoint: str = "chair") -> Scene:
+def truth_scene(table: LaidTable, viewpoint: str = DEFAULT_VIEWPOINT) -> Scene:
     """Return the true scene: every thing with its name and its box in the table's frame.
 
     The object ``o3`` is the thing whose points have label 3.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, OrientedBox, PerceivedObject, Scene
 
 State = Literal["seen", "hidden", "gone"]
 
@@ -104,7 +104,7 @@ class Situation:
     merged: tuple[TrackedThing, ...] = ()
     busy: bool = False
 
-    def scene(self, viewpoint: str = "chair") -> Scene:
+    def scene(self, viewpoint: str = DEFAULT_VIEWPOINT) -> Scene:
         """Return the things as a scene, in the table's frame.
 
         Parameters
@@ -120,7 +120,7 @@ class Situation:
         return scene_of(self.things, self.at, viewpoint)
 
 
-def scene_of(things: Iterable[TrackedThing], at: float, viewpoint: str = "chair") -> Scene:
+def scene_of(things: Iterable[TrackedThing], at: float, viewpoint: str = DEFAULT_VIEWPOINT) -> Scene:
     """Return tracked things as a scene, in the table's frame.
 
     Parameters

@@ -180,7 +180,7 @@ def kind_of(name: str) -> str:
 
 
 def box_of(statement: Statement) -> tuple[float, ...] | None:
-    """Return the box in a statement of place, as the blackboard has it.
+    """Return the box in a statement of place from the blackboard.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ class LayingModel:
     ----------
     examples
         Layings from start to end. Their order does not matter.
-    told
+    described
         Order that a person stated, or None.
     name
         Name of the activity, which predictions carry.
@@ -120,11 +120,11 @@ class LayingModel:
     ['fork', 'knife']
     """
 
-    def __init__(self, examples: Sequence[Laying], told: Activity | None = None, name: str = "laying") -> None:
+    def __init__(self, examples: Sequence[Laying], described: Activity | None = None, name: str = "laying") -> None:
         self._name = name
         self._examples = [tuple(example) for example in examples if example]
         orders = [_numbered(example) for example in self._examples]
-        stated_items = () if told is None else tuple((step.thing, step.number) for step in told.steps)
+        stated_items = () if described is None else tuple((step.thing, step.number) for step in described.steps)
         self._items: tuple[Item, ...] = tuple(sorted({item for order in orders for item in order} | set(stated_items)))
         if not self._items:
             raise SettingError("a prediction needs at least one example of a laying, or a stated order")
@@ -138,7 +138,7 @@ class LayingModel:
             self._before[np.ix_(numbers, numbers)] += np.triu(np.ones((len(numbers),) * 2), 1)
             self._follows[np.append(-1, numbers[:-1]) % (n + 1), numbers] += 1
         self._at = at
-        self._first = self._must_be_first(told, stated_items)
+        self._first = self._must_be_first(described, stated_items)
 
     def predict(self, laid: Laying) -> Prediction:
         """Predict what is laid next.
@@ -206,14 +206,14 @@ class LayingModel:
                 free.append((near < max(TAKEN, place.spread), -often, rank, place))
         return min(free, key=lambda each: each[:3])[3] if free else None
 
-    def _must_be_first(self, told: Activity | None, stated_items: Sequence[Item]) -> NDArray[np.float64]:
+    def _must_be_first(self, described: Activity | None, stated_items: Sequence[Item]) -> NDArray[np.float64]:
         """Return the posterior probability (n, n) that one step always comes before another one."""
         n = len(self._items)
         prior = np.full((n, n), STRICT)
-        if told is not None:
+        if described is not None:
             for a, one in enumerate(stated_items):
                 for b, other in enumerate(stated_items):
-                    if told.stated[a, b] == STARTS_FIRST:
+                    if described.stated[a, b] == STARTS_FIRST:
                         i, j = self._at[one], self._at[other]
                         prior[i, j], prior[j, i] = RELATION_HOLDS, (1 - RELATION_HOLDS) / 2
         yes, no = self._before, self._before.T

@@ -98,9 +98,9 @@ def turned_roles(
             turn = _turn(poses, first, way[first, second], handle=False) if entry.fact.positive else None
             found.setdefault((role, things[first]), []).append(Turned(entry.fact, turn))
     for outcome in claims:
-        for who, turned in _of_claim(outcome, place, way, poses):
-            found.setdefault(who, []).append(turned)
-    return {who: tuple(turns) for who, turns in found.items()}
+        for role_and_thing, turned in _of_claim(outcome, place, way, poses):
+            found.setdefault(role_and_thing, []).append(turned)
+    return {role_and_thing: tuple(turns) for role_and_thing, turns in found.items()}
 
 
 def _of_claim(

@@ -101,10 +101,10 @@ class OrderDerivations:
         ndarray
             Numbers of shape (k,); ``FAR`` where the bound does not follow.
         """
-        n, onward = len(self._names), bound.tail == 0
-        root = bound.points(subject, subject, n)[0 if onward else 1]
-        points = (2 * bound.axis + (bound.head_side if onward else bound.tail_side)) * n + objects
-        return self._paths.costs(root, points, bound.strict, backwards=not onward)
+        n, forwards = len(self._names), bound.tail == 0
+        root = bound.points(subject, subject, n)[0 if forwards else 1]
+        points = (2 * bound.axis + (bound.head_side if forwards else bound.tail_side)) * n + objects
+        return self._paths.costs(root, points, bound.strict, backwards=not forwards)
 
     @cached_property
     def _index(self) -> dict[str, int]:
@@ -231,9 +231,9 @@ class OrderDerivations:
         for premise in path:
             fact = self._premises[premise]
             leaf = _leaf(fact, assumed=premise >= self._assumed)
-            onward = fact.subject == here
-            steps.append(leaf if onward else self._turned(fact, leaf))
-            here = fact.object if onward else fact.subject
+            forwards = fact.subject == here
+            steps.append(leaf if forwards else self._turned(fact, leaf))
+            here = fact.object if forwards else fact.subject
         if relation is None:
             return Proof(claim, Rule.MEANING if len(steps) == 1 else Rule.COMPOSITION, tuple(steps))
         wrapped = [_widened(step, relation) for step in steps]
@@ -259,8 +259,8 @@ def _chains(paths: ShortestPaths, parts: Sequence[Conjunction], s: int, o: int, 
     found: dict[Bound, Path] = {}
     for bound in parts[0]:
         tail, head = bound.points(s, o, n)
-        onward = bound.tail == 0
-        path = paths.path(*((tail, head) if onward else (head, tail)), bound.strict, backwards=not onward)
+        forwards = bound.tail == 0
+        path = paths.path(*((tail, head) if forwards else (head, tail)), bound.strict, backwards=not forwards)
         if path is None:
             return None
         found[bound] = path

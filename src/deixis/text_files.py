@@ -8,6 +8,7 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
@@ -18,6 +19,43 @@ MAX_CHARACTERS = 100_000_000
 
 MAX_LINE_CHARACTERS = 1_000_000
 """Maximum number of characters of a line."""
+
+
+MIN_SIMILARITY = 0.85
+"""Minimum similarity of two names, as a ratio of matching characters, at which one is suggested for the other."""
+
+MAX_NAMES = 10_000
+"""Maximum number of files of a folder among which a similar name is sought."""
+
+
+def no_such_file(file: str | Path, shown: str | None = None) -> str:
+    """Return the message about a missing file, with the most similar name in its folder, if one is similar.
+
+    Parameters
+    ----------
+    file
+        The missing file.
+    shown
+        Name of the file at the beginning of the message; by default, ``file``.
+
+    Returns
+    -------
+    str
+        The message.
+
+    Examples
+    --------
+    >>> no_such_file("nowhere/dinner.layout")
+    'nowhere/dinner.layout: there is no such file'
+    """
+    from difflib import get_close_matches
+
+    path, similar = Path(file), list[str]()
+    with contextlib.suppress(OSError, ValueError):
+        names = [entry.name for entry in islice(path.parent.iterdir(), MAX_NAMES) if entry.suffix == path.suffix]
+        similar = get_close_matches(path.name, sorted(names), n=1, cutoff=MIN_SIMILARITY)
+    hint = f"; did you mean '{path.parent / similar[0]}'?" if similar else ""
+    return f"{file if shown is None else shown}: there is no such file{hint}"
 
 
 def read_text(file: str | Path, error: type[DeixisError] = DeixisError, most: int = MAX_CHARACTERS) -> str:
@@ -220,7 +258,7 @@ def _opened(file: str | Path, error: type[DeixisError], undecoded: str = "strict
     except UnicodeDecodeError as wrong:
         raise error(f"{file}: the file is not UTF-8 (byte {wrong.start}); save it as UTF-8") from wrong
     except FileNotFoundError:
-        raise error(f"{file}: there is no such file") from None
+        raise error(no_such_file(file)) from None
     except OSError as wrong:
         raise error(f"{file}: cannot be read: {wrong.strerror}") from wrong
     except ValueError as wrong:

@@ -30,6 +30,9 @@ def test_what_is_not_a_text_file_is_refused_by_name(read: Callable[[Path], objec
     assert "this is a folder; name a file" in refused(read, tmp_path)
     assert "this is not a regular file" in refused(read, Path("/dev/zero"))
     assert "there is no such file" in refused(read, tmp_path / "missing.txt")
+    (tmp_path / "breakfast.txt").write_text("fork", encoding="utf-8")
+    assert refused(read, tmp_path / "breakfats.txt").endswith(f"did you mean '{tmp_path / 'breakfast.txt'}'?")
+    assert refused(read, tmp_path / "breakfast.csv").endswith("there is no such file")
     assert "not UTF-8 (byte 3); save it as UTF-8" in refused(read, latin)
     assert "cannot be read: embedded null byte" in refused(read, tmp_path / "a\0b")
 

@@ -39,6 +39,14 @@ def test_a_notebook_runs_from_top_to_bottom(path: Path) -> None:
             for display in ("_repr_html_", "_repr_png_"):
                 if hasattr(shown, display):
                     getattr(shown, display)()
+            if ast.unparse(last).endswith(".plot()"):
+                assert shown._repr_png_().startswith(b"\x89PNG"), "a notebook shows no figure without this"
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_no_cell_hides_its_picture(path: Path) -> None:
+    for cell in cells(path):
+        assert not "".join(cell["source"]).rstrip().endswith(".plot();")
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -212,3 +212,19 @@ def test_headings_turn_with_the_scene_and_are_written(tmp_path: Path) -> None:
 def test_wrong_heading_is_refused(known: Heading) -> None:
     with pytest.raises(SceneError, match="heading"):
         Scene((PerceivedObject("cup", (0.0, 0.0), (0.1, 0.1), heading=known),))
+
+
+@pytest.mark.parametrize(("unit", "scale"), [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("px", 1.0)])
+def test_lengths_of_boxes_are_converted_to_metres(unit: str, scale: float) -> None:
+    corners = Scene.from_boxes(min=[[10, 20]], max=[[30, 60]], unit=unit)
+    centres = Scene.from_boxes(centre=[[20, 40]], size=[[20, 40]], yaw=0.0, unit=unit)
+    for scene in (corners, centres):
+        np.testing.assert_allclose(scene.boxes, scale * np.array([[[10, 20], [30, 60]]]))
+        assert scene.unit == ("px" if unit == "px" else "m")
+
+
+def test_an_unknown_unit_of_boxes_is_refused() -> None:
+    with pytest.raises(SceneError, match=r"^`unit` must be one of m, cm, mm, px, got 'inch'$"):
+        Scene.from_boxes(min=[[0, 0]], max=[[1, 1]], unit="inch")
+    with pytest.raises(SceneError, match=r"`unit` of a Scene must be 'm' or 'px', got 'cm'; convert the boxes"):
+        Scene((), unit="cm")

@@ -50,7 +50,7 @@ def test_a_relation_has_its_inverse_transitivity_and_atoms() -> None:
         assert ("; transitive;" in said) == relation.transitive
         assert "on x " in said
         assert "; on y " in said
-        assert ("on z, where heights are known" in said) == bool(relation.z_atoms)
+        assert ("on z, with known heights and overlap on x and y," in said) == bool(relation.z_atoms)
 
 
 def test_a_relation_is_listed_once_under_its_reading() -> None:

@@ -135,8 +135,10 @@ class FixedPhraseChunker(JointChunker):
             order = self._order(at)
             if order is not None:
                 return order
-        told = self.norms[at + 1] in PUT_VERBS and self.nouns.starts(at + 2) and self._previous() in ("", "ADVERB")
-        if norm in ("not", "no") and told and not self.nouns.is_noun(at + 1):
+        is_command = (
+            self.norms[at + 1] in PUT_VERBS and self.nouns.starts(at + 2) and self._previous() in ("", "ADVERB")
+        )
+        if norm in ("not", "no") and is_command and not self.nouns.is_noun(at + 1):
             return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=False))
         called = at + 1 + ((norm, self.norms[at + 1]) in _CALLS)
         if norm in _ATTENTION and self.norms[called] == "," and self._previous() in ("", "ADVERB", "COMMA", "CUT"):
@@ -308,8 +310,8 @@ class FixedPhraseChunker(JointChunker):
             spared = not _NECESSARY.isdisjoint(before)  # 'it is not necessary to put it there'
             denied = any(word in NEGATIONS or word in _FORBIDDING for word in before)
             used = "used" in before  # 'it may be used to cut bread or to spread butter on it'
-            told = denied or (self._is_told_to(at) and not used)
-            modal = None if told and not (denied and spared) else "might"
+            is_sure = denied or (self._is_told_to(at) and not used)
+            modal = None if is_sure and not (denied and spared) else "might"
             denied = denied and not spared
             return Chunk(
                 "PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", modal, positive=not denied)

@@ -313,8 +313,8 @@ class VerbChunker(RelatorChunker):
             and self.nouns.is_determiner(taken)
         ):
             return Chunk("DO", at, taken, _with(group, norm, "other", "base"))
-        told = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["BE"]
-        if norm in ("put", "set", "spread") and told and self._predicate_after(i):
+        after_be = [chunk.type for chunk in self.chunks if chunk.type != "ADVERB"][-1:] == ["BE"]
+        if norm in ("put", "set", "spread") and after_be and self._predicate_after(i):
             return Chunk("PART", at, end, _with(group, norm, "posture", "participle"))  # 'are commonly put on it'
         if (
             norm in ("lay", "put", "set")

@@ -207,8 +207,8 @@ class Assembly:
         if link == "in case" and self.clauses:
             return  # a reason: 'a copy is in the box in case the first is lost'
         if link == "while" and self.clauses and built.verbs and built.verbs[0].group.lemma == "be":
-            told = [p for verb in built.verbs for part in verb.predications for p in part.predicates]
-            if told and all(p.relation in _CONDITIONS and not p.arguments for p in told):
+            verb_predicates = [p for verb in built.verbs for part in verb.predications for p in part.predicates]
+            if verb_predicates and all(p.relation in _CONDITIONS and not p.arguments for p in verb_predicates):
                 self._conditional(span, link)  # 'do not put it on the scale while it is hot'
                 return
         if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever", "in case") and (
@@ -687,11 +687,11 @@ class Assembly:
         fronted = [p for p in (*predicates, *(q for part in verb.predications for q in part.predicates)) if p.arguments]
         if phrase is not None and fronted and shape in ("existential", "inverted", "verbless"):
             near = fronted[-1].arguments  # 'in front of the jug there is a cup, 15 cm away'
-            told = tuple(
+            with_places = tuple(
                 replace(p, arguments=near) if p.measure is not None and not p.arguments and not p.part else p
                 for p in phrase.predicates
             )
-            phrase = replace(phrase, predicates=told)
+            phrase = replace(phrase, predicates=with_places)
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
         main = flat(replace(verb, thing=None))

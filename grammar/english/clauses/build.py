@@ -469,12 +469,12 @@ class Builder(Transformer[Any, Built]):
         if person is not None and viewed and relation in ("at", "on", "inside", "to"):  # 'the window at my back'
             return (Predicate("behind", (person,), span, positive=relator.positive), *extra)
         whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
-        told = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
+        is_pointed_at = noun.phrase.head in _POINTED_AT and noun.phrase.determiner in ("this", "that")
         measured = last_word(noun.phrase.head).rpartition("-")[2] in _MEASURES  # 'at eye-level'
         ranked = any(a.dimension in ("position", "rank") for a in noun.phrase.adjectives)
         if noun.phrase.head == "level" and ranked and relation in ("on", "at", "inside"):
             measured, relation = False, "on"  # 'on the bottom level'
-        if (measured or told) and relation in ("at", "on"):
+        if (measured or is_pointed_at) and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             places = tuple(
                 replace(p, relation="far") if p.relation == "from" else p
@@ -676,10 +676,10 @@ class Builder(Transformer[Any, Built]):
 
     def relative(self, rel: Chunk, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that stands on the tray*."""
-        told = tuple(flat(verb))
+        flattened = tuple(flat(verb))
         if verb.group.modal in _OBLIGING:  # 'the lid, which needs to be removed'
-            told = tuple(p for p in told if p.relation != "state")
-        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation in _OF_ITS_OWN else p for p in told)
+            flattened = tuple(p for p in flattened if p.relation != "state")
+        return tuple(replace(p, adverbs=(*p.adverbs, "that")) if p.relation in _OF_ITS_OWN else p for p in flattened)
 
     def reduced(self, rel: Chunk, predications: tuple[Predication, ...]) -> tuple[Predicate, ...]:
         """Return the predicates of *that next to the tray*."""

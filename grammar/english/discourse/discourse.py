@@ -585,8 +585,8 @@ class Discourse(Statements):
 
     def _nothing(self, subject: NounPhrase, clause: Clause) -> None:
         """Read *nothing lies between the boots*, *no stopper was found*."""
-        told = any(argument.predicates for p in clause.predicates for argument in p.arguments)
-        if _NO_PERSON.fullmatch(self._words(subject)) and not told:
+        is_described = any(argument.predicates for p in clause.predicates for argument in p.arguments)
+        if _NO_PERSON.fullmatch(self._words(subject)) and not is_described:
             return  # 'so that no one sits in the salad'
         predicates = tuple(p for p in clause.predicates if p.relation != "there")  # 'anywhere near it'
         if not predicates:

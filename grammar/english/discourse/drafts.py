@@ -94,7 +94,7 @@ class Drafting:
         self.hedges = SUPPOSED | hedges
         self.drafts: list[Draft] = []
         self.drafted: set[Draft] = set()
-        self.told: set[tuple[int, str, str]] = set()
+        self.stated_qualities: set[tuple[int, str, str]] = set()
         surface = surface_noun(sentences)
         self.references = References(surface, self._compare, text=text)
         self.order: str | None = None

@@ -270,8 +270,8 @@ class Mentions(Drafting, ABC):
                 if entity.members and not phrase.plural and not new:
                     continue
                 key = (id(entity), adjective.dimension, adjective.word)
-                if key not in self.told:
-                    self.told.add(key)
+                if key not in self.stated_qualities:
+                    self.stated_qualities.add(key)
                     self._add(
                         adjective.dimension, (entity,), (), value=adjective.word, how=replace(plain, span=phrase.span)
                     )

@@ -730,15 +730,17 @@ class References:
         here = [entity for entity in self.named if entity is not besides]
         if len(here) > 1:  # 'between the mug and the bowl, but closer to the latter'
             return here[-2], here[-1]
-        told = [f for f in self.recent if f.subject is not None]
-        if len(self.pair) > 1 and told and told[0].subject in self.pair:
+        with_subject = [f for f in self.recent if f.subject is not None]
+        if len(self.pair) > 1 and with_subject and with_subject[0].subject in self.pair:
             return self.pair[0], self.pair[-1]  # 'the former is red, the latter is blue'
-        here_told = [f for f in told[:2] if f.sentence == self.sentence and f.relation == told[0].relation]
-        subjects = [f.subject for f in here_told if f.subject is not None]
+        in_this_sentence = [
+            f for f in with_subject[:2] if f.sentence == self.sentence and f.relation == with_subject[0].relation
+        ]
+        subjects = [f.subject for f in in_this_sentence if f.subject is not None]
         if len(subjects) > 1 and subjects[0] is not subjects[1]:
             return subjects[1], subjects[0]  # 'the knife is on the mat and the fork isn't; the latter …'
-        pair = next((f for f in told if f.others), None)
-        for focus in told:
+        pair = next((f for f in with_subject if f.others), None)
+        for focus in with_subject:
             if focus.subject is not None and not focus.subject.noun and len(focus.subject.members) > 1:
                 return focus.subject.members[0], focus.subject.members[-1]
             if focus.others and focus.sentence < self.sentence:
@@ -1119,8 +1121,8 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
 def _is_one_of_a_kind(phrase: NounPhrase, entity: Entity) -> bool:
     """Return True for *the large knife* after *knives*: one of them, of which the adjective is true."""
     kind = entity.plural and not (entity.single or entity.members) and not phrase.plural and phrase.determiner == "the"
-    told = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN and a.dimension in _OWN}
-    return kind and bool(told) and not told & entity.adjectives
+    qualities = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN and a.dimension in _OWN}
+    return kind and bool(qualities) and not qualities & entity.adjectives
 
 
 def _are_others(phrase: NounPhrase, group: Entity) -> bool:
@@ -1151,8 +1153,8 @@ def _marks(phrase: NounPhrase) -> set[tuple[str, str]]:
 def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:
     if entity.members:
         return False
-    told = dict(_marks(phrase))
-    if any(told.get(dimension, word) != word for dimension, word in entity.adjectives):
+    marks = dict(_marks(phrase))
+    if any(marks.get(dimension, word) != word for dimension, word in entity.adjectives):
         return True
     for adjective in phrase.adjectives:
         words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}

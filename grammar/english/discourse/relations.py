@@ -525,8 +525,8 @@ class Relations(Mentions):
         last = None if focus is None else focus.subject
         if focus is None or last is None or last.role is not Role.THING:
             return
-        told = [d.how.positive for d in self.drafts if d.how.sentence == focus.sentence and last in d.subjects]
-        if focus.sentence != self.how.sentence and not any(told):
+        is_positive = [d.how.positive for d in self.drafts if d.how.sentence == focus.sentence and last in d.subjects]
+        if focus.sentence != self.how.sentence and not any(is_positive):
             return  # after 'keep lilies away from the door', nothing is on top of them
         rest = [leaf for leaf in last.leaves() if leaf is not subject.itself]
         if len(rest) < last.size:
@@ -612,9 +612,9 @@ class Relations(Mentions):
             if predicate.measure is not None and last.role is Role.THING:
                 self._add("distance", (subject,), (last,), metres=predicate.measure.metres)
             return
-        told = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (subject,)]
-        if not self.how.positive and told and told[-1].arguments and predicate.part is None:
-            self._pair(subject, predicate.relation, told[-1].arguments[0], False)  # 'tongs on top, not underneath'
+        drafted = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (subject,)]
+        if not self.how.positive and drafted and drafted[-1].arguments and predicate.part is None:
+            self._pair(subject, predicate.relation, drafted[-1].arguments[0], False)  # 'tongs on top, not underneath'
             return
         value = {"in_front": "near", "behind": "far"}.get(predicate.relation, predicate.part or predicate.relation)
         if predicate.relation in ("in_front", "behind", "above", "below") and not self.how.positive:

@@ -206,9 +206,9 @@ class Statements(Relations):
         """Return the participle for a state of a thing: *hidden* for *it is hidden*, *burning* for *burns*."""
         forms = verb_forms()
         written = [w for w in self.text[slice(*predicate.span)].casefold().split() if w in forms]
-        told = next((word for word in written if forms[word].lemma == lemma), None)
-        if told is None or forms[told].form not in ("s", "base"):
-            return told or lemma
+        found = next((word for word in written if forms[word].lemma == lemma), None)
+        if found is None or forms[found].form not in ("s", "base"):
+            return found or lemma
         return next((word for word, form in forms.items() if form.lemma == lemma and form.form == "ing"), lemma)
 
     def _is_doubtful_state(self, predicate: Predicate) -> bool:

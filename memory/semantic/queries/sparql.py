@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,10 +25,10 @@ from deixis.memory.semantic.queries.tokens import (
     tokens,
     too_deep,
 )
-from deixis.memory.semantic.rdf.files import PREFIXES
+from deixis.memory.semantic.rdf.files import PREFIXES, short
 from deixis.memory.semantic.rdf.graphs import GRAPHS, READABLE, GraphName, graph_iri
 from deixis.ontology.rdf.triples import LEARNED, typed
-from deixis.ontology.rdf.vocabulary import BASE, DX
+from deixis.ontology.rdf.vocabulary import BASE, DX, W3C
 from deixis.ontology.relations.relation import nearest
 from deixis.printable import window
 
@@ -57,6 +58,7 @@ class CheckedQuery:
     prefixes: Mapping[str, str]  # the predeclared prefixes that it uses
     terms: tuple[tuple[str, int], ...] = ()  # IRIs in the namespaces of CLOSED, and where each first stands
     learned: tuple[str, ...] = ()  # IRIs of things that a memory learned
+    types: tuple[str, ...] = ()  # IRIs of the classes whose instances it asks for
 
 
 class _Text:
@@ -268,7 +270,17 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     kind, ordered, iris = QueryKind(form.text.lower()), _ordered(found), _iris(found, known)
     terms = tuple((iri, place) for iri, place in iris.items() if (prefix := _closed(iri)) and iri != CLOSED[prefix])
     learned = tuple(iri for iri in iris if iri.startswith(LEARNED) and iri != LEARNED)
-    return CheckedQuery(text.text, kind, names_graphs, asks_graphs, ordered, undeclared, terms, learned)
+    types = tuple(dict.fromkeys(_types(found, known)))
+    return CheckedQuery(text.text, kind, names_graphs, asks_graphs, ordered, undeclared, terms, learned, types)
+
+
+def _types(found: list[Token], known: Mapping[str, str]) -> Iterator[str]:
+    """Yield the IRI of each class that follows ``a`` or ``rdf:type``."""
+    iri_kinds = (TokenKind.IRI, TokenKind.NAME)
+    for before, token in itertools.pairwise(found):
+        is_type = before.text == "a" or (before.kind in iri_kinds and _iri(before, known) == W3C.RDF_TYPE)
+        if is_type and token.kind in iri_kinds and not token.text.startswith("_:"):
+            yield _iri(token, known)
 
 
 def _iris(found: list[Token], known: Mapping[str, str]) -> dict[str, int]:
@@ -372,6 +384,31 @@ def unknown_things(store: ox.Store, sparql: str) -> Iterator[str]:
         yield f"the memory has no '{_in_query(iri)}'{hint}"
 
 
+def classes_without_instances(store: ox.Store, sparql: str) -> Iterator[str]:
+    """Yield a note for each class whose instances a query asks for, and of which the memory has subclasses only.
+
+    Parameters
+    ----------
+    store
+        The memory.
+    sparql
+        An admitted query.
+
+    Yields
+    ------
+    str
+        A sentence without a full stop, which says how to ask for the subclasses.
+    """
+    for iri in _admitted(sparql).types:
+        term = ox.NamedNode(iri)
+        if any(store.quads_for_pattern(None, ox.NamedNode(W3C.RDF_TYPE), term)):
+            continue
+        below = store.quads_for_pattern(None, ox.NamedNode(W3C.RDFS_SUB_CLASS_OF), term)
+        if any(isinstance(quad.subject, ox.NamedNode) and quad.subject.value.startswith(LEARNED) for quad in below):
+            name = short(iri)
+            yield f"'{name}' has subclasses in this memory but no instances; ask for '?x rdfs:subClassOf {name}'"
+
+
 def _in_query(iri: str) -> str:
     """Return the IRI of a learned thing as a query can name it."""
     return f"lx:{iri.removeprefix(LEARNED)}".replace("/", "\\/")
@@ -401,7 +438,7 @@ def incomplete_layouts(store: ox.Store, sparql: str) -> tuple[str, ...]:
     return tuple(sorted(layout.value.rpartition("/")[2] for layout in layouts if isinstance(layout, ox.NamedNode)))
 
 
-def notes_on(store: ox.Store, sparql: str) -> tuple[str, ...]:
+def notes_on(store: ox.Store, sparql: str, is_empty: bool = False) -> tuple[str, ...]:
     """Return notes on what an answer may lack.
 
     Parameters
@@ -410,6 +447,8 @@ def notes_on(store: ox.Store, sparql: str) -> tuple[str, ...]:
         The memory.
     sparql
         An admitted query.
+    is_empty
+        True if the answer has neither rows nor triples.
 
     Returns
     -------
@@ -417,6 +456,8 @@ def notes_on(store: ox.Store, sparql: str) -> tuple[str, ...]:
         Sentences without a full stop; empty if the answer lacks nothing.
     """
     unknown = tuple(unknown_things(store, sparql))
+    if is_empty:
+        unknown += tuple(classes_without_instances(store, sparql))
     names = incomplete_layouts(store, sparql)
     if not names:
         return unknown

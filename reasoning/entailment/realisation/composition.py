@@ -211,7 +211,7 @@ def within(network: DifferenceNetwork, axis: int, inner: int, outer: int) -> boo
     Returns
     -------
     bool
-        True if every solution has it so.
+        True if this holds in every solution.
     """
     begins = network.distances[axis, low(inner), low(outer)] <= ZERO
     return bool(begins and network.distances[axis, high(outer), high(inner)] <= ZERO)

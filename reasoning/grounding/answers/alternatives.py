@@ -11,9 +11,10 @@ from deixis.reasoning.grounding.answers.answer import LeftOut
 from deixis.reasoning.grounding.engines.engine import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.options import DECIDED
 
 MIN_LISTED_PROBABILITY = 0.01
-"""Minimum probability of an alternative that is listed."""
+"""Minimum probability of a listed alternative; the most probable alternative of an undecided match is always listed."""
 
 MAX_LISTED_GROUP = 100
 """Largest group of interchangeable objects that list each other's things: k objects list k * k things."""
@@ -52,11 +53,14 @@ def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternat
     assert alignment.posterior is not None
     row, chosen = alignment.posterior.marginals[i], int(alignment.assignment[i])
     own = max(float(row[chosen]), 1e-300)  # UNMATCHED is -1, the last column, which is that of being left out
+    others = np.delete(np.arange(len(row)), chosen)
+    likely = others[row[others] >= MIN_LISTED_PROBABILITY]
+    if not len(likely) and own < DECIDED and row[others].max(initial=0.0) > 0:
+        likely = others[[row[others].argmax()]]
     found = []
-    for p in np.flatnonzero(row >= MIN_LISTED_PROBABILITY).tolist():
-        if p != chosen % len(row):
-            perceived = evidence.scene.nodes[p] if p < len(evidence.scene.nodes) else None
-            found.append(Alternative(perceived, max(0.0, round(math.log(own / row[p]), 9)), float(row[p])))
+    for p in likely.tolist():
+        perceived = evidence.scene.nodes[p] if p < len(evidence.scene.nodes) else None
+        found.append(Alternative(perceived, max(0.0, round(math.log(own / row[p]), 9)), float(row[p])))
     return found
 
 

@@ -236,7 +236,7 @@ class Grounding(Answer):
         decided = sum(match.decided for match in matched.values())
         parts = [f"{len(matched)} of {count(objects, 'object')} matched", f"{decided} decided"]
         parts.append(f"{len(self.satisfied)} of {count(len(self.outcomes), 'fact')} satisfied")
-        if self.fits is not None:
+        if self.fits is not None and self.matches:
             parts.append(f"fits {self.fits:.2f}")
         return ", ".join(parts)
 

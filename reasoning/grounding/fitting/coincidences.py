@@ -75,8 +75,8 @@ class JudgedTable:
         probability = np.clip(self.found.probability * remaining, 1e-12, 1 - 1e-12)
         margin = np.log(probability / (1 - probability)) - math.log(DECIDED / (1 - DECIDED))
         decided = (self.errors <= DECIDED - DECIDED_LOWER_BOUND) / (1 + np.exp(-SHARPNESS * margin))
-        worth = decided * np.where(self.right, 1.0, -WRONG_COST)
-        return float(np.log(np.maximum(of_truth, MIN_PROBABILITY)).mean() + DECISION_WEIGHT * worth.mean())
+        gains = decided * np.where(self.right, 1.0, -WRONG_COST)
+        return float(np.log(np.maximum(of_truth, MIN_PROBABILITY)).mean() + DECISION_WEIGHT * gains.mean())
 
 
 def fit_coincidences(settings: Sequence[Sequence[JudgedTable]], iterations: int = 200) -> CoincidenceWeights:

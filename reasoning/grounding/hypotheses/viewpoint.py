@@ -219,13 +219,13 @@ class _AngleSearch:
     def closer(self, looked: Sequence[_AngleEvidence]) -> tuple[list[_AngleEvidence], bool]:
         """Replace the best angles by finer ones over the same arc; also return whether the time sufficed for all."""
         best = max(one.log_evidence for one in looked)
-        worth = [one.tried for one in looked if one.log_evidence >= best - REFINEMENT_MARGIN]
+        refined = [one.tried for one in looked if one.log_evidence >= best - REFINEMENT_MARGIN]
         if self.deadline.passed:
             return list(looked), False
-        fine = [finer for one in worth for finer in _finer(one)]
+        fine = [finer for one in refined for finer in _finer(one)]
         seen = self.at(fine)
         done = len(seen) // FINE_PER_COARSE  # an arc that was not searched completely keeps its coarse angle
-        replaced = {id(one) for one in worth[:done]}
+        replaced = {id(one) for one in refined[:done]}
         kept = [one for one in looked if id(one.tried) not in replaced]
         return kept + seen[: done * FINE_PER_COARSE], len(seen) == len(fine)
 

@@ -77,7 +77,7 @@ def situation_of(description: RelationGraph, scene: SceneRelations, implied: Imp
     Returns
     -------
     Situation
-        What questions need to know of both.
+        Properties of both that questions need.
 
     Raises
     ------

@@ -55,7 +55,7 @@ class EnglishText:
 
 
 def english_problems(document: EnglishText) -> list[Problem]:
-    """Return the errors of a text of which nothing is understood, else the warnings of ``deixis lint``.
+    """Return the errors of a text in which nothing is understood, otherwise the warnings of ``deixis lint``.
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ def require_picture(path: str | Path) -> Path:
 
 
 def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, Any]:
-    """Return an empty figure that needs no display.
+    """Return an empty figure that needs no display, and that a notebook shows as the value of a cell.
 
     Parameters
     ----------
@@ -106,13 +106,12 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
         If matplotlib is not installed.
     """
     require("matplotlib", "drawing a picture")
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    from deixis.plots.displayed_figure import DisplayedFigure
+
     room = ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=MARGIN)
-    figure = Figure(figsize=(width, height), facecolor=PAPER, layout=room)
-    FigureCanvasAgg(figure)
+    figure = DisplayedFigure(figsize=(width, height), facecolor=PAPER, layout=room)
     return figure, figure.subplots(**subplots)
 
 

@@ -141,8 +141,8 @@ def _draw(axes: Axes, moment: Moment) -> None:
             _draw_view(axes, moment, view["image"], view["owner"], view["ids"].tolist())
     spoken = [*moment.said, *(("wrong", fault) for fault in moment.faults if not moment.said)]
     lines: list[str] = []
-    for who, words in spoken:
-        whole = textwrap.wrap(f"{who}: {words}", LINE, subsequent_indent="   ")
+    for speaker, words in spoken:
+        whole = textwrap.wrap(f"{speaker}: {words}", LINE, subsequent_indent="   ")
         lines += whole if len(whole) <= MAX_SAID else [*whole[: MAX_SAID - 1], f"{whole[MAX_SAID - 1]} …"]
     lines = [*lines[:MAX_LINES], *[""] * (MAX_LINES - len(lines))]
     axes.set_xlabel("\n".join(lines), fontsize=8, loc="left", color=INK, family="DejaVu Sans")
@@ -192,7 +192,7 @@ def _save(figure: Figure, path: Path) -> None:
 def _page(moments: Sequence[Moment]) -> str:
     shown = []
     for number, moment in enumerate(moments, 1):
-        spoken = "".join(f"<li><b>{escape(who)}</b>: {escape(words)}</li>" for who, words in moment.said)
+        spoken = "".join(f"<li><b>{escape(speaker)}</b>: {escape(words)}</li>" for speaker, words in moment.said)
         wrong = "".join(f'<li class="wrong">{escape(fault)}</li>' for fault in moment.faults)
         known = ", ".join(f"{id} ({(name or 'unknown').replace('_', ' ')})" for id, name in moment.things.items())
         new = f" New: {escape(', '.join(sorted(moment.new)))}." if moment.new else ""

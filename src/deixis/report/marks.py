@@ -60,7 +60,7 @@ def violation(text: str, is_violation: bool = True) -> str:
 
     Examples
     --------
-    >>> violation("misplaced   fork"), violation("misplaced   fork").mark
-    ('misplaced   fork', <Mark.VIOLATION: 'violation'>)
+    >>> violation("misplaced    fork"), violation("misplaced    fork").mark
+    ('misplaced    fork', <Mark.VIOLATION: 'violation'>)
     """
     return MarkedLine(text, Mark.VIOLATION) if is_violation else text

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import html
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -380,9 +379,7 @@ def to_png(answer: Answer) -> bytes | None:
         figure = plot(answer, None)
     except DeixisError:
         return None
-    target = io.BytesIO()
-    figure.savefig(target, format="png", dpi=110)
-    return target.getvalue()
+    return _function("plots.displayed_figure:png_of")(figure)  # type: ignore[no-any-return]
 
 
 def to_html(answer: Answer) -> str:

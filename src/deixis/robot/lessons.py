@@ -173,7 +173,7 @@ class TableLesson:
         return replace(self, settled=known, waiting=rest)
 
     def revised(self, table: TaughtTable | None) -> TableLesson:
-        """Return the lesson as the memory has it after something was taken back.
+        """Return the lesson as it is in the memory after something was taken back.
 
         Parameters
         ----------

@@ -147,7 +147,7 @@ class Robot(Closing):
     ('supper', ['supper'])
     >>> robot.watches(at=2.0)
     >>> robot.sees(Scene.from_boxes(lower[:2], upper[:2]), at=3.0)
-    <Scene <scene>: 2 objects, 3-D boxes in m, seen from the chair>
+    <Scene 2 objects, 3-D boxes in m, seen from the chair>
     >>> [str(fault) for fault in robot.check()]
     ['the knife is missing']
     >>> robot.consolidate().lessons, robot.reconsider(), len(robot.diary.board.now()) > 0

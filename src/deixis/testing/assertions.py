@@ -380,7 +380,7 @@ def assert_checks(
 
 
 def _listed(names: Collection[str]) -> str:
-    return ", ".join(sorted(names)) or "nothing"
+    return ", ".join(sorted(names)) or "empty"
 
 
 def _inferred(script: Script | str | Path, fact: str) -> tuple[Inference, Any]:

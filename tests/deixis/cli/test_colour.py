@@ -58,8 +58,8 @@ def test_undecided_matches_are_yellow_and_decided_ones_plain() -> None:
 
 def test_a_wrong_table_is_red() -> None:
     out = on_terminal("check", example("formal_dinner.layout"), example("second_table.scene.json"), "--no-memory")
-    assert f"{RED}This table is not laid" in out and f"{RED}missing     water_glass" in out
-    assert "\ncorrect     9 of 12" in out
+    assert f"{RED}This table is not laid" in out and f"{RED}missing      water_glass" in out
+    assert "\ncorrect      9 of 12" in out
 
 
 @pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb")])

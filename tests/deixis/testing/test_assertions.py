@@ -77,7 +77,7 @@ def test_checks_name_exactly_the_faults() -> None:
     assert_checks(DINNER, SETTING)
     faults = {"missing": ["water_glass"], "misplaced": ["dinner_fork", "dinner_knife"], "extra": ["p1"]}
     assert_checks(DINNER, SECOND, **faults)
-    with pytest.raises(AssertionError, match="missing must be nothing, got water_glass"):
+    with pytest.raises(AssertionError, match="missing must be empty, got water_glass"):
         assert_checks(DINNER, SECOND)
-    with pytest.raises(AssertionError, match="extra must be nothing, got p1"):
+    with pytest.raises(AssertionError, match="extra must be empty, got p1"):
         assert_checks(DINNER, SECOND, **{**faults, "extra": []})

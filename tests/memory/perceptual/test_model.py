@@ -37,7 +37,7 @@ records = st.builds(CategoryRecord, names, states, json)
 
 
 @given(view=views, record=records)
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_any_record_comes_back(
     view: View, record: CategoryRecord, said: Any, content: Any, one_level: LevelMemory
 ) -> None:

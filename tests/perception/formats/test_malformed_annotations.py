@@ -212,7 +212,7 @@ def paths(data: Any, *above: Any) -> list[tuple[Any, ...]]:
     return [path for key, value in children for path in ((*above, key), *paths(value, *above, key))]
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(data=st.data(), original=st.sampled_from([COCO, LABELME]), value=values, image=st.none() | st.just(1))
 def test_a_changed_file_gives_a_scene_or_a_scene_error(
     data: st.DataObject, original: Json, value: Any, image: int | None
@@ -221,7 +221,6 @@ def test_a_changed_file_gives_a_scene_or_a_scene_error(
     refused_or_read(spoilt, image)
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.dictionaries(st.sampled_from(["images", "annotations", "categories", "shapes", "version"]), values))
 def test_an_arbitrary_file_gives_a_scene_or_a_scene_error(data: Json) -> None:
     refused_or_read(data, None)

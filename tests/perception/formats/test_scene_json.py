@@ -64,13 +64,12 @@ def scenes(draw: st.DrawFn) -> Scene:
     )
 
 
-@settings(max_examples=60, deadline=None)
 @given(scenes())
 def test_a_scene_is_read_back_from_its_dictionary(scene: Scene) -> None:
     assert read_scene(json.loads(json.dumps(scene_to_dict(scene)))) == scene
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(scene=scenes())
 def test_a_scene_is_read_back_from_its_file(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "written.scene.json"

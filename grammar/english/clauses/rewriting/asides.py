@@ -255,8 +255,8 @@ def _measures_apart(chunks: list[Chunk], at: int) -> Run | None:
     sizes = {chunk.type for chunk in inner} <= {"NP", "ADJP", "AND", "MEASURE"} and bool(inner)
     if not sizes or type_at(chunks, end) != "COMMA" or type_at(chunks, end + 1) not in FINITE:
         return None
-    told = all(not _LENGTHS.isdisjoint(c.value.head.split()) for c in inner if c.type == "NP")
-    if not told:
+    has_length = all(not _LENGTHS.isdisjoint(c.value.head.split()) for c in inner if c.type == "NP")
+    if not has_length:
         return None
     leave_out(chunks[at + 1 : end], "a measure without 'is' is not read here")
     return end + 1, None

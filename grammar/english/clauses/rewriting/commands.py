@@ -72,8 +72,8 @@ def _second_verb(chunks: list[Chunk], at: int) -> Run | None:
         return None
     phrase = chunks[at + 1].value
     form = verb_forms().get(phrase.head) if phrase.plural and phrase.determiner is None else None
-    told = form is not None and form.form == "base" and form.kind in ("posture", "lean")
-    return (at + 2, None) if told and not phrase.adjectives and phrase.head not in NAMED_LIKE_THINGS else None
+    is_posture = form is not None and form.form == "base" and form.kind in ("posture", "lean")
+    return (at + 2, None) if is_posture and not phrase.adjectives and phrase.head not in NAMED_LIKE_THINGS else None
 
 
 def _with_placements_as_commands(chunks: list[Chunk]) -> list[Chunk]:
@@ -119,12 +119,12 @@ def _with_means_as_commands(chunks: list[Chunk]) -> list[Chunk]:
     A placement is a means only where its clause is neither under a condition, nor denied, nor past.
     """
     groups = [chunk.value for chunk in chunks if isinstance(chunk.value, VerbGroup)]
-    told = not any(group.past or not group.positive or group.modal in _UNSURE for group in groups)
+    is_asserted = not any(group.past or not group.positive or group.modal in _UNSURE for group in groups)
     limited = any(
         chunk.type in ("REL", "COMPLEMENT") or (chunk.type == "SUB" and chunk.value not in _UNCONDITIONAL)
         for chunk in chunks
     )
-    if limited or not told:
+    if limited or not is_asserted:
         return chunks
     for at, chunk in enumerate(chunks[:-3]):
         named = chunk.type == "UNKNOWN" and chunk.value == "by" and chunk.end == chunk.start + 1

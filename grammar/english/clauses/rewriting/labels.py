@@ -31,9 +31,13 @@ def _with_labels_of_definitions(chunks: list[Chunk]) -> list[Chunk]:
     if types != ["NP", "COLON", "NP"] or chunks[2].value.determiner not in ("a", "an") or chunks[2].value.members:
         return chunks
     end = next((k for k in range(3, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), len(chunks))
-    told = chunks[3:end]
-    purpose = bool(told) and (told[0].type == "REL" or getattr(told[0].value, "lemma", "") == "use")
-    purpose = purpose or (bool(told) and told[0].type in ("UNKNOWN", "PREP") and word_of(told[0]) == "for")
+    after_label = chunks[3:end]
+    purpose = bool(after_label) and (
+        after_label[0].type == "REL" or getattr(after_label[0].value, "lemma", "") == "use"
+    )
+    purpose = purpose or (
+        bool(after_label) and after_label[0].type in ("UNKNOWN", "PREP") and word_of(after_label[0]) == "for"
+    )
     rest = [chunk for chunk in chunks[end + 1 :] if chunk.type != "ADVERB"]
     if not purpose or type_at(chunks, end) != "COMMA" or not rest or rest[0].type not in ("PART", "PREP"):
         return chunks

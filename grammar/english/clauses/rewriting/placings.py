@@ -60,8 +60,8 @@ def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     if chunks and chunks[first].type in ("PUT", "DO", "FIND") and chunks[first].value.lemma in _RESERVING:
         return _with_reserved_places(chunks, first) or whole
     types = [type_at(chunks, first + k) for k in range(4)]
-    told = types[2] == "PART" and chunks[first + 2].value.lemma in _RESERVED
-    at = first + 2 + told
+    is_reserved = types[2] == "PART" and chunks[first + 2].value.lemma in _RESERVED
+    at = first + 2 + is_reserved
     if types[:2] != ["NP", "BE"] or type_at(chunks, at) != "PREP" or type_at(chunks, at + 1) != "NP":
         return whole
     place, be, relator, thing = chunks[first], chunks[first + 1], chunks[at].value, chunks[at + 1].value
@@ -69,8 +69,10 @@ def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
     while [type_at(chunks, end), type_at(chunks, end + 1)] == ["AND", "NP"]:
         end += 2
     noun = last_word(place.value.head)
-    single = be.value.positive and (told or not place.value.plural) and be.value.modal in (None, "should", "must")
-    fits = relator.preposition.phrase == "for" or (told and relator.preposition.phrase == "to")
+    single = (
+        be.value.positive and (is_reserved or not place.value.plural) and be.value.modal in (None, "should", "must")
+    )
+    fits = relator.preposition.phrase == "for" or (is_reserved and relator.preposition.phrase == "to")
     named = _names_things(thing)
     if not (single and fits and named and noun in _STORING and type_at(chunks, end) in ENDS):
         return whole

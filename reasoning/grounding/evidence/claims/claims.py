@@ -157,17 +157,19 @@ def claim_tables(
                     claim_ratios[index[claim.subjects[0]]] += _ratio(claim, degree, 1.0)
                 continue
             for ends, degree, share in scene.of(claim):
-                who = tuple(index[name] for name in ends)
-                if len(set(who)) < len(who):
+                positions = tuple(index[name] for name in ends)
+                if len(set(positions)) < len(positions):
                     continue
-                if len(who) == 1:
-                    claim_ratios[who[0]] += _ratio(claim, degree, share)
-                elif len(who) == 2:
-                    pairs[who[0], who[1]] = pairs.get((who[0], who[1]), 0.0) + _ratio(claim, degree, share)
+                if len(positions) == 1:
+                    claim_ratios[positions[0]] += _ratio(claim, degree, share)
+                elif len(positions) == 2:
+                    pairs[positions[0], positions[1]] = pairs.get((positions[0], positions[1]), 0.0) + _ratio(
+                        claim, degree, share
+                    )
                 else:
                     for third, axis in ((2, 2), (1, 1)):
-                        part = _ratio(claim, degree, share / 2, _chances(unary[who[third]]), axis)
-                        ends_left = who[0], who[3 - third]
+                        part = _ratio(claim, degree, share / 2, _chances(unary[positions[third]]), axis)
+                        ends_left = positions[0], positions[3 - third]
                         pairs[ends_left] = pairs.get(ends_left, 0.0) + part
     tables = np.zeros((len(pairs), len(boxes), len(boxes)), dtype=np.float32)
     for table, ratio in zip(tables, pairs.values(), strict=True):

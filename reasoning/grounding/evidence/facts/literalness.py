@@ -62,13 +62,13 @@ def literal_share(either: Iterable[Problem], objects: Order, deadline: Deadline 
     >>> round(literal_share((problem, replace(problem, tables=3 * there)), order), 2)
     0.12
     """
-    worth = [
+    best_values = [
         _best_value(_part(problem, objects), deadline) if len(problem.ends) and not deadline.passed else 0.0
         for problem in either
     ]
     if deadline.passed:
         return LITERAL * LITERAL_PRIOR
-    odds = LITERAL_PRIOR / (1 - LITERAL_PRIOR) * np.exp(np.clip(worth[1] - worth[0], -500, 500))
+    odds = LITERAL_PRIOR / (1 - LITERAL_PRIOR) * np.exp(np.clip(best_values[1] - best_values[0], -500, 500))
     return float(LITERAL * odds / (1 + odds))
 
 

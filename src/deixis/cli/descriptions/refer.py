@@ -103,6 +103,8 @@ def refer(
         return
     if text is None or scene is None:
         raise typer.BadParameter("give a TEXT and a SCENE, or --batch FILE")
+    if text.endswith(".json") and not Path(scene).exists():
+        raise typer.BadParameter(f"give the TEXT before the SCENE: deixis refer '{visible_line(scene)}' {text}")
     from deixis.report.descriptions.refer import reference_lines, reference_to_dict
     from deixis.workflows.descriptions.refer import refer as find
     from deixis.workflows.layouts.read import load_scene

@@ -22,6 +22,8 @@ from deixis.cli.output import note_change
 if TYPE_CHECKING:
     from deixis.session import Session
 
+NOTHING_TAUGHT = "No views were taught: a view needs the points of an object, as 'deixis perceive -o' writes them."
+
 category_app = typer.Typer(help="List, rename, merge or forget taught categories.", no_args_is_help=True)
 
 
@@ -37,7 +39,7 @@ def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     if as_json:
         print_json(known)
     elif known or not left_out:
-        print_lines([f"{name:<24} {count}" for name, count in known.items()] or ["Nothing was taught."])
+        print_lines([f"{name:<24} {count}" for name, count in known.items()] or [NOTHING_TAUGHT])
     for note in left_out:
         print_note(note)
     if left_out:

@@ -38,7 +38,10 @@ def imagine(
     time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Time for each table.")] = 30.0,
     as_json: AsJson = False,
 ) -> None:
-    """Lay an example table that satisfies a script, or print which facts allow no table (exit 1)."""
+    """Lay an example table that satisfies a script, or print which facts allow no table (exit 1).
+
+    Each line has an object, its width and depth, the place of its centre in centimetres, and its kind.
+    """
     from deixis.deadline import Deadline
     from deixis.grammar.read import read_script_file
     from deixis.report.layouts.imagine import imagination_lines, imagination_to_dict

@@ -17,6 +17,13 @@ if TYPE_CHECKING:
 PAGE = "index.html"
 """Name of the page in the folder of the pictures."""
 
+LEAD = (
+    "A person describes how a table is laid. A robot finds which perceived object each word means, learns, and checks "
+    "the next table. Each step below shows a command (dark), what it prints, and its picture if it has one. Run the "
+    "commands in the folder of the repository."
+)
+"""First paragraph of the page."""
+
 _STYLE = (
     "body{font-family:sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;line-height:1.4}"
     "pre{background:#f4f4f4;padding:.7rem;overflow-x:auto}pre.command{background:#222;color:#fff}img{max-width:100%}"
@@ -93,9 +100,9 @@ class Tour:
 
     def write_page(self) -> None:
         """Write the page beside the pictures, which it names relative to itself, and print where it is."""
-        head = f'<meta charset="utf-8"><title>Deixis</title><style>{_STYLE}</style>'
+        head = f'<meta charset="utf-8"><title>Deixis, step by step</title><style>{_STYLE}</style>'
         body = "\n".join(self._body)
-        body = f"<body>\n<h1>Deixis</h1>\n{body}\n</body>"
+        body = f"<body>\n<h1>Deixis, step by step</h1>\n<p>{escape(LEAD)}</p>\n{body}\n</body>"
         page = f'<!DOCTYPE html>\n<html lang="en">\n<head>{head}</head>\n{body}\n</html>\n'
         file = self._out / PAGE
         file.write_text(page, encoding="utf-8")

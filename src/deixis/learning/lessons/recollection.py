@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Who:
+class MatchedThings:
     """The thing that each object of a description was matched with: its place in the scene's list, or None."""
 
     things: tuple[int | None, ...]
@@ -44,7 +44,7 @@ class Remembered:
     lesson: str
     description: RelationGraph
     scene: Scene
-    who: Who
+    matched: MatchedThings
     texts: tuple[str, str]
 
 
@@ -198,22 +198,24 @@ def _remembered(record: LessonRecord, layout: LayoutConcept | None, ontology: On
         description = layout.graph(ontology.relations)
     else:
         description = parse_script(record.script_text, record.script_file, ontology).graph()
-    who = labelled(description, scene, ontology.kinds) if record.words_only else _matched(record, description, scene)
-    return Remembered(record.id, description, scene, who, (record.script_text, record.scene_text))
+    matched = (
+        labelled(description, scene, ontology.kinds) if record.words_only else _matched(record, description, scene)
+    )
+    return Remembered(record.id, description, scene, matched, (record.script_text, record.scene_text))
 
 
-def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> Who:
+def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> MatchedThings:
     places = {id: place for place, id in enumerate(scene.ids)}
     matches = {match.object: match for match in record.matches}
     found = [matches.get(name) for name in description.nodes]
-    return Who(
+    return MatchedThings(
         tuple(places.get(match.perceived) if match else None for match in found),
         tuple(match.sureness if match else 0.0 for match in found),
         tuple(match is not None and match.decided for match in found),
     )
 
 
-def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
+def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> MatchedThings:
     """Match each object with the only thing whose label fits it, with the confidence of that label.
 
     Parameters
@@ -237,4 +239,4 @@ def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
     alone = fitted & (fitted.sum(axis=1) == 1)[:, None] & (fitted.sum(axis=0) == 1)[None, :]
     things = tuple(int(row.argmax()) if row.any() else None for row in alone)
     sure = tuple(0.0 if thing is None else scene.objects[thing].confidence for thing in things)
-    return Who(things, sure, tuple(thing is not None for thing in things))
+    return MatchedThings(things, sure, tuple(thing is not None for thing in things))

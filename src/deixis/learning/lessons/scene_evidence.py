@@ -14,7 +14,7 @@ from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import Ontology
 from deixis.ontology.things.kinds import Kinds
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.claims.places import supporting_box
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from, thing_evidence
@@ -255,9 +255,11 @@ def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
     """
     if viewpoint is None or viewpoint == scene.viewpoint:
         return ()
+    default = ", the default" if scene.viewpoint == DEFAULT_VIEWPOINT else ""
     return (
-        f"the viewpoint of the script is '{viewpoint}' and that of the scene is '{scene.viewpoint}': "
-        "left and right were compared without conversion",
+        f"the viewpoint of the script is '{viewpoint}' and that of the scene is '{scene.viewpoint}'{default}: "
+        "left and right were compared without conversion; if the scene was seen from "
+        f"""'{viewpoint}' too, write "viewpoint": "{viewpoint}" in it""",
     )
 
 

@@ -125,9 +125,9 @@ def size_views(lesson: Remembered, kinds: Kinds) -> list[SizeView]:
 
 
 def _matched(lesson: Remembered) -> Iterator[tuple[str, int]]:
-    who = lesson.who
+    matched = lesson.matched
     for kind, thing, decided, sure in zip(
-        classes(lesson.description), who.things, who.decided, who.sureness, strict=True
+        classes(lesson.description), matched.things, matched.decided, matched.sureness, strict=True
     ):
         if thing is not None and decided and sure >= SURE:
             yield kind, thing

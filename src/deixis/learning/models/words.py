@@ -166,7 +166,7 @@ def _learned(
 
 
 def _pairs(one: Remembered) -> SaidPairs:
-    return said_pairs(one.description, one.scene.boxes, one.who.things, one.who.sureness)
+    return said_pairs(one.description, one.scene.boxes, one.matched.things, one.matched.sureness)
 
 
 def informed(models: Iterable[RelationModel]) -> tuple[frozenset[str], float]:
@@ -205,8 +205,8 @@ def example_pairs(example: Example) -> SaidPairs:
     """
     script, scene = example
     description = script.graph()
-    who = labelled(description, scene, script.ontology.kinds)
-    return said_pairs(description, scene.boxes, who.things, who.sureness)
+    matched = labelled(description, scene, script.ontology.kinds)
+    return said_pairs(description, scene.boxes, matched.things, matched.sureness)
 
 
 def teaching(examples: Sequence[Example]) -> tuple[list[Example], list[str]]:

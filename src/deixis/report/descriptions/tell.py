@@ -11,14 +11,14 @@ from deixis.report.marks import doubt
 
 if TYPE_CHECKING:
     from deixis.grammar.reading import StatedFact
-    from deixis.workflows.descriptions.telling import Telling
+    from deixis.workflows.descriptions.telling import Telling, ToldObject
 
 WIDTH = 100
 """Columns of the text."""
 
 
 def telling_lines(telling: Telling) -> list[str]:
-    """Return the text, filled to the width of the terminal, then what it could not say.
+    """Return the text, filled to the width of the terminal, the ids of numbered things, and what it could not say.
 
     Parameters
     ----------
@@ -31,11 +31,18 @@ def telling_lines(telling: Telling) -> list[str]:
         Lines of at most :data:`WIDTH` characters unless a word is longer; then the warnings, marked as doubt.
     """
     lines = textwrap.wrap(telling.text, WIDTH, break_long_words=False, break_on_hyphens=False) or ["Nothing is stated."]
+    numbered = [f"{thing.words} is {thing.id}" for thing in telling.objects if _is_numbered(thing)]
+    lines += textwrap.wrap(f"In the scene, {', '.join(numbered)}.", WIDTH) if numbered else []
     lines += [doubt(f"Not read as it is meant: {content}") for content in telling.misread]
     lost = [thing.id for thing in telling.objects if thing.found is False]
     if lost:
         lines.append(doubt(f"Not singled out: {', '.join(lost)}."))
     return lines + [doubt(f"Note: {note}") for note in telling.notes]
+
+
+def _is_numbered(thing: ToldObject) -> bool:
+    """Return whether the text names a thing of a scene by its number, as *the second cup*."""
+    return thing.found is not None and thing.words.rpartition(" ")[2].isdecimal()
 
 
 def telling_to_dict(telling: Telling) -> dict[str, Any]:

@@ -42,8 +42,12 @@ def grounding_lines(found: Grounding) -> list[str]:
     from deixis.reasoning.grounding.answers.answer import Outcome
 
     objects = found.object_matches
-    lines = [line for match in objects.values() for line in match_lines(match)] or ["No object was found."]
+    lines = [line for match in objects.values() if match.object not in found.members for line in match_lines(match)]
     lines += [line for name, members in found.members.items() for line in member_lines(name, members)]
+    if lines:
+        lines += [f"{left.name:<24} left out" for left in found.unmatched_objects[:MAX_LISTED]]
+    else:
+        lines = ["No object was found."]
     if found.surface is not None:
         thing = found.matches[found.surface].perceived
         lines.append(f"{found.surface:<24} {thing:<10} the surface that the objects stand on")
@@ -72,8 +76,11 @@ def grounding_lines(found: Grounding) -> list[str]:
     lines += [violation(f"    violated: {violation_text(entry)}") for entry in found.violated]
     own = [one for one in found.frames if one.frame in FRAMES]
     lines += [f"    {one.fact}: {FRAMES[one.frame]} (probability {one.probability:.2f})" for one in own[:MAX_LISTED]]
-    if found.fits is not None and found.outcomes and (found.matches or found.unmatched_perceived):
-        lines.append(f"The description fits this scene with probability {_probability(found.fits).strip()}.")
+    if found.fits is not None and found.outcomes:
+        if found.matches:
+            lines.append(f"The description fits this scene with probability {_probability(found.fits).strip()}.")
+        elif found.unmatched_perceived:
+            lines.append("Without a match, nothing shows whether the description is of this scene.")
     lines += left_out_lines((*found.unmatched_objects, *found.unmatched_perceived))
     pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
     lines += pivotal[:MAX_LISTED]
@@ -269,7 +276,7 @@ def _match_line(match: Match) -> str:
 
 
 def _thing(other: Alternative) -> str:
-    return other.perceived or "not there"
+    return other.perceived or "absent"
 
 
 def probability_text(value: float) -> str:

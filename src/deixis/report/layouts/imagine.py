@@ -47,7 +47,7 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
     for thing, sized in zip(table.scene.objects, table.objects, strict=True):
         (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
         kind = sized.kind.label if sized.kind else "kind not known"
-        size, place = f"{_cm(right - x)} x {_cm(top - y)} cm", f"at {_cm(x)}, {_cm(y)}"
+        size, place = f"{_cm(right - x)} x {_cm(top - y)} cm", f"at {_cm((x + right) / 2)}, {_cm((y + top) / 2)}"
         yield f"{sized.name:<24} {size:<16} {place:<16} {kind}"
     total = len(table.holds) + len(table.waived) + len(table.not_shown)
     yield _held_line(len(table.holds), total)

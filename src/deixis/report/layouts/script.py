@@ -13,6 +13,14 @@ from deixis.report.marks import doubt, violation
 MAX_LISTED = 12
 """Maximum number of source lines to list behind an inferred fact, and of objects to list of a counterexample."""
 
+NEXT_LINE = " " * 13
+"""Indentation below the verdicts of a check."""
+
+UNDETERMINED_REMEDY = (
+    "Labels in the scene, or recognition, would show what the undetermined things are; 'deixis ground' decides by "
+    "places and sizes too."
+)
+
 MAX_INFERRED_LISTED = 20_000
 """Maximum number of inferred facts to list."""
 
@@ -151,7 +159,10 @@ def why_not_lines(found: WhyNot) -> list[str]:
         stated = [fact for fact in found.conflict.facts if fact.source is not None]
         return lines + [f"    {fact.source}: {fact}" for fact in stated]
     assert found.picture is not None
-    lines = [f"{found.fact} does not follow: it is false in this picture, where every firm fact holds."]
+    lines = [
+        f"{found.fact} does not follow: it is false on this table, where every firm fact holds "
+        "(the numbers only order the sides of the boxes)."
+    ]
     boxes = dict(zip(found.picture.objects, found.picture.boxes.astype(int).tolist(), strict=True))
     ends = dict.fromkeys((found.fact.subject, found.fact.object))
     shown = [*ends, *(name for name in boxes if name not in ends)][:MAX_LISTED]
@@ -227,41 +238,45 @@ def check_lines(checked: Check) -> list[str]:
             fact for fact in checked.layout.facts if entry.role in (fact.subject, fact.object) and not fact.optional
         ]
         stated = "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
-        lines.append(violation(f"missing     {entry.role}{stated}"))
+        lines.append(violation(f"missing      {entry.role}{stated}"))
     for entry in table.of(RoleVerdict.MISPLACED):
         exchanged = f", where {entry.in_place_of} belongs" if entry.in_place_of else ""
-        lines.append(violation(f"misplaced   {entry.role} ({entry.perceived}){exchanged}"))
-        lines += [violation(f"            {violation_text(broken)}") for broken in entry.broken]
+        lines.append(violation(f"misplaced    {entry.role} ({entry.perceived}){exchanged}"))
+        lines += [violation(f"{NEXT_LINE}{violation_text(broken)}") for broken in entry.broken]
     turned_by_claim = {turned.statement: entry for entry in table.turned for turned in entry.turned}
     for entry in table.turned:
         for turned in entry.turned:
-            lines.append(violation(f"turned      {entry.role} ({entry.perceived}): {turned.remedy}"))
+            lines.append(violation(f"turned       {entry.role} ({entry.perceived}): {turned.remedy}"))
             place = f" ({turned.statement.source})" if turned.statement.source else ""
-            lines.append(violation(f"            {turned.statement}{place} does not hold"))
+            lines.append(violation(f"{NEXT_LINE}{turned.statement}{place} does not hold"))
     blamed = {entry.role for entry in table.of(RoleVerdict.MISPLACED)}
     for broken in table.broken:
         if not blamed & {broken.fact.subject, broken.fact.object} and broken.fact not in turned_by_claim:
-            lines.append(violation(f"broken      {violation_text(broken)}"))
+            lines.append(violation(f"broken       {violation_text(broken)}"))
     for entry, other in table.miscoloured:
         seen = f"{other.seen.label}, not {other.described.label}"
-        lines.append(violation(f"miscoloured {entry.role} ({entry.perceived}): {seen}"))
-    lines += [violation(f"extra       {extra.perceived}: {extra.reason}") for extra in table.extra]
+        lines.append(violation(f"miscoloured  {entry.role} ({entry.perceived}): {seen}"))
+    lines += [violation(f"extra        {extra.perceived}: {extra.reason}") for extra in table.extra]
     lines += [
-        violation(f"broken      {_claim_text(entry)}")
+        violation(f"broken       {_claim_text(entry)}")
         for entry in violated(table.claims)
         if entry.claim not in turned_by_claim
     ]
-    lines += [violation(f"unexpected  {violation_text(entry)}") for entry in table.unexpected]
+    lines += [violation(f"unexpected   {violation_text(entry)}") for entry in table.unexpected]
     hedged = (entry for entry in table.claims if entry.claim.weight < 1 and entry.verdict is ClaimVerdict.VIOLATED)
-    lines += [violation(f"unexpected  {_claim_text(entry)}") for entry in hedged]
+    lines += [violation(f"unexpected   {_claim_text(entry)}") for entry in hedged]
     unsure = (entry for entry in table.claims if entry.verdict is ClaimVerdict.UNDECIDABLE)
-    lines += [doubt(f"unchecked   {_claim_text(entry)}") for entry in unsure]
+    lines += [doubt(f"unchecked    {_claim_text(entry)}") for entry in unsure]
     lines += [
         doubt(f"undetermined {entry.role}: {entry.perceived} {_known_by(entry)}")
         for entry in table.of(RoleVerdict.UNDETERMINED)
     ]
-    lines += [f"absent      {entry.role}, which is optional" for entry in table.of(RoleVerdict.ABSENT)]
-    lines.append(f"correct     {len(table.of(RoleVerdict.CORRECT))} of {len(table.roles)}")
+    lines += [f"absent       {entry.role}, which is optional" for entry in table.of(RoleVerdict.ABSENT)]
+    undetermined = len(table.of(RoleVerdict.UNDETERMINED))
+    rest = f", {undetermined} undetermined" if undetermined else ""
+    lines.append(f"correct      {len(table.of(RoleVerdict.CORRECT))} of {len(table.roles)}{rest}")
+    if undetermined:
+        lines.append(UNDETERMINED_REMEDY)
     return lines + [f"Note: {note}." for note in table.grounding.notes]
 
 

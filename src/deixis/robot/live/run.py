@@ -240,7 +240,7 @@ def live_robot(
 
         latest = 0.0
 
-        def told(change: Logged) -> None:
+        def on_change(change: Logged) -> None:
             nonlocal latest
             if change.after is None or change.before is not None:
                 return
@@ -259,7 +259,7 @@ def live_robot(
             ModuleSpec("deixis.robot.live.learner:Learner", {"memory": str(memory)}),
             ModuleSpec("deixis.robot.live.senses:Senses", {"story": asdict(story), "folder": str(folder)}),
         ]
-        subscription = board.subscribe("view", Pattern(), told, since=board.sequence)
+        subscription = board.subscribe("view", Pattern(), on_change, since=board.sequence)
         with Runtime(board, modules, processes, trouble) as runtime:
             robot.runtime = runtime
             try:

@@ -386,12 +386,12 @@ def simulated_story(script: Script, seed: int = 0, rate: float = RATE) -> Story:
         )
         for k, aim in zip(shown, recording.aims, strict=True)
     ]
-    told_at = SPEECH_PAUSE + recording.skeletons[-1].at + SPEECH_PAUSE
+    description_at = SPEECH_PAUSE + recording.skeletons[-1].at + SPEECH_PAUSE
     name = (script.name or "this table").replace("_", " ")
-    words.append(Utterance(f"This is how '{name}' is laid. {tell(script).text}", told_at, speaker="teacher"))
+    words.append(Utterance(f"This is how '{name}' is laid. {tell(script).text}", description_at, speaker="teacher"))
 
     before = Stage(first.things, seed)
-    before.carry_out(Rest(told_at + SPEECH_PAUSE))
+    before.carry_out(Rest(description_at + SPEECH_PAUSE))
     after = Stage([thing for k, thing in enumerate(second.things) if k not in (forgotten, brought)], seed)
     after.carry_out(Rest(SPEECH_PAUSE))
     after.carry_out(Bring(second.things[brought]))

@@ -92,8 +92,8 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
 def _cleared(box: Box, example: Box, others: Sequence[tuple[Box, Box]]) -> Box:
     """Return a box moved away from the places of others that it overlaps and that it is apart from in the example.
 
-    ``others`` are places with their boxes in the example. The box moves in the direction in which the example has it
-    beside the other, along the axis that takes the shorter way. It stays where it was if no such way is found.
+    ``others`` are places with their boxes in the example. The box moves to the side on which it stands in the
+    example, along the axis that takes the shorter way. It stays where it was if no such way is found.
     """
     apart = [(place, other) for place, other in others if not _overlap(example, other)]
     moved = box

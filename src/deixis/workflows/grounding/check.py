@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from deixis.answers import Answer
+from deixis.answers import Answer, count
 from deixis.arguments import checks_arguments
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
@@ -51,8 +51,8 @@ class Check(Answer):
     >>> found = deixis.check(example("formal_dinner.layout"), example("place_setting.scene.json"))
     >>> found.table.well, found.summary()
     (True, "of 'formal_dinner': nothing wrong, 12 undetermined")
-    >>> found.to_text().splitlines()[-1]
-    'correct     0 of 12'
+    >>> found.to_text().splitlines()[-2]
+    'correct      0 of 12, 12 undetermined'
     >>> found.conforms, found.report.count("sh:ValidationResult")
     (True, 0)
     """
@@ -66,9 +66,9 @@ class Check(Answer):
         """Return the layout's name, and how many objects have each verdict."""
         verdicts = Counter(role.verdict.value for role in self.table.roles)
         verdicts["extra"] = len(self.table.extra)
-        verdicts["violated facts"] = len(self.table.broken)
-        verdicts["violated claims"] = len(list(violated(self.table.claims)))
-        counts = ", ".join(f"{number} {verdict}" for verdict, number in verdicts.items() if number)
+        parts = [f"{number} {verdict}" for verdict, number in verdicts.items() if number]
+        broken = {"violated fact": len(self.table.broken), "violated claim": len(list(violated(self.table.claims)))}
+        counts = ", ".join([*parts, *(count(number, what) for what, number in broken.items() if number)])
         return f"of {self.layout.name!r}: {'nothing wrong' if self.table.well else 'not as described'}, {counts}"
 
     @property

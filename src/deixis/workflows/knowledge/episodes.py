@@ -348,13 +348,13 @@ def _logical(
         triples = terms | {stated[each.id] for each in some}
         return (ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
 
-    told = [each for each in fluents if each.id in stated]
+    stated_fluents = [each for each in fluents if each.id in stated]
     try:
         if deadline.passed:
             raise LimitError("no time left")
-        if entail(text_of(told), LogicEngine.RL, deadline.left).consistent:
+        if entail(text_of(stated_fluents), LogicEngine.RL, deadline.left).consistent:
             return  # then what held at one time is consistent too
-        for time, held in _situations(told, undecided, "by the ontology"):
+        for time, held in _situations(stated_fluents, undecided, "by the ontology"):
             if deadline.passed:
                 raise LimitError("no time left")
             text = text_of(held)

@@ -108,15 +108,15 @@ def script_without(record: Provenance, layout: LayoutConcept, sentence: str, ont
     try:
         if record.told_text is None:
             return _layout_without(record, layout, sentence, ontology)
-        told = read_english(record.told_text, record.script_file, ontology)
+        described = read_english(record.told_text, record.script_file, ontology)
     except ScriptError:
         return None
-    reading = told.reading
+    reading = described.reading
     if reading is None or plain(sentence) not in {plain(each.text) for each in reading.sentences}:
         return None
-    kept = [each for each in told.statements if plain(_sentence_of(each, reading)) != plain(sentence)]
+    kept = [each for each in described.statements if plain(_sentence_of(each, reading)) != plain(sentence)]
     rest = without_sentence(record.told_text, sentence, ontology) or ""
-    script = replace(told, statements=tuple(kept), reading=replace(reading, text=rest))
+    script = replace(described, statements=tuple(kept), reading=replace(reading, text=rest))
     try:
         again = read_english(rest, record.script_file, ontology)
         if _stated(again) == _stated(script):

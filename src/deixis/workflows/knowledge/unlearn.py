@@ -373,7 +373,7 @@ def _lessons(chosen: _Chosen, knowledge: KnowledgeStore) -> tuple[str, ...]:
 
 
 def _revised(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str]) -> tuple[list[str], list[Lesson]]:
-    """Return the lessons of which nothing is left without the sentence, and the others that had it, without it."""
+    """Return the lessons that are empty without the sentence, and the other lessons that had it, without it."""
     from deixis.memory.semantic.rdf.graphs import GraphName
     from deixis.memory.semantic.rdf.links import events_of_lessons
     from deixis.ontology.lessons.read import provenances
@@ -392,8 +392,8 @@ def _revised(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str])
         script = script_without(record, layout, chosen.all.sentence, knowledge.ontology)
         if script is None:
             continue
-        told, meaning = events.get(record.lesson, ()), knowledge.meaning_before(record.lesson)
-        lesson = lesson_of_script(script, record, record.engine, told, meaning)
+        own_events, meaning = events.get(record.lesson, ()), knowledge.meaning_before(record.lesson)
+        lesson = lesson_of_script(script, record, record.engine, own_events, meaning)
         gone += [record.lesson] if lesson is None else []
         revised += [] if lesson is None else [lesson]
     return gone, revised

@@ -17,7 +17,7 @@ from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.things.kinds import Kind, Kinds, with_article
 from deixis.ontology.things.sizes import SizeRange
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict
 from deixis.reasoning.entailment.claim_facts import facts_of_claims, with_facts_of_claims
 from deixis.reasoning.entailment.conflict import find_conflict
@@ -304,7 +304,7 @@ def _table(
     )
     not_shown = _not_shown(graph, picture.boxes) - given_up
     return ImaginedTable(
-        scene=Scene(things, viewpoint=script.viewpoint or "chair"),
+        scene=Scene(things, viewpoint=script.viewpoint or DEFAULT_VIEWPOINT),
         objects=objects,
         holds=tuple(graph.fact(edge) for edge in stated if edge not in given_up | not_shown),
         waived=tuple(

@@ -44,7 +44,7 @@ def sequence_of(source: str | Path | StepSequence) -> StepSequence:
 
 
 def sequence_of_episodes(board: Blackboard, start: float | None = None, end: float | None = None) -> StepSequence:
-    """Return the sequence in which things came, as a blackboard has it.
+    """Return the sequence in which things came, as recorded on a blackboard.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.features.orientation import with_headings
 from deixis.perception.formats.scene_json import scene_text
-from deixis.perception.scene import Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, Scene
 from deixis.text_files import is_folder, is_present
 
 READING = "reading the cloud"
@@ -36,7 +36,7 @@ _CLOUD = re.compile(r"o\d+(-[0-9a-f]{8}|\.new)\.pcd")
 def perceive(
     cloud: PointCloud | str | Path,
     intrinsics: str | Path | None = None,
-    viewpoint: str = "chair",
+    viewpoint: str = DEFAULT_VIEWPOINT,
     settings: DetectionSettings | None = None,
     stage: Callable[[str], None] | None = None,
 ) -> Scene:

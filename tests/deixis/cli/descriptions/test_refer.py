@@ -137,3 +137,8 @@ def test_bad_input_is_one_message(arguments: list[object], said: str) -> None:
     code, _, err = deixis("refer", *arguments)
     assert code == 2
     assert said in " ".join(err.split())
+
+
+def test_a_scene_before_the_text_is_refused_with_the_order() -> None:
+    code, _, error = deixis("refer", STUDY, "the black chair")
+    assert code == 2 and "give the TEXT before the SCENE: deixis refer 'the black chair'" in error

@@ -98,7 +98,7 @@ def test_learned_models_are_written_read_and_shown(lesson: list[str], tmp_path: 
     models = read_models(out)
     assert models["horizontal"].provenance.examples == 2
     assert models["horizontal"].provenance.sources == (f"{lesson[0]} {lesson[1]}",)
-    assert models["vertical"] == shipped_models()["vertical"] or models["vertical"].provenance.examples == 0
+    assert models["vertical"].provenance.examples == 0
     assert "learned from 2 facts of one scene" in run("relation", "left", "--models", out).stdout
 
 

@@ -40,3 +40,8 @@ def test_what_is_not_a_layout_or_a_scene_is_an_error(tmp_path: Path) -> None:
     code, _, error = deixis("tell", file)
     assert code == 2
     assert "x.scene.json" in error
+
+
+def test_the_ids_of_numbered_things_are_printed() -> None:
+    lines = deixis("tell", EXAMPLES / "second_table.scene.json")[1].splitlines()
+    assert lines[-1] == "In the scene, napkin 1 is p6, napkin 2 is p1."

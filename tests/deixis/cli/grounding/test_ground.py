@@ -266,3 +266,33 @@ def test_a_script_about_nothing_in_the_scene_is_told_so(said: str, tmp_path: Pat
     found = json.loads(out)
     assert not found["matches"] and len(found["unmatched_objects"]) == 2 and found["pivotal"] is None
     assert any("another scene" in note for note in found["notes"])
+
+
+TWO_BOXES = {
+    "unit": "cm",
+    "objects": [{"id": "a", "min": [0, 0], "max": [25, 25]}, {"id": "b", "min": [30, 2], "max": [32, 23]}],
+}
+
+
+def test_each_object_left_out_has_a_line(tmp_path: Path) -> None:
+    scene = write(tmp_path / "two.scene.json", json.dumps(TWO_BOXES))
+    script = write(tmp_path / "three.layout", "knife right of plate\nteapot above plate")
+    lines = deixis("ground", script, scene)[1].splitlines()
+    assert [line.split()[:2] for line in lines[:2]] == [["knife", "b"], ["plate", "a"]]
+    assert lines[2] == f"{'teapot':<24} left out"
+
+
+def test_without_a_match_no_probability_of_the_scene(tmp_path: Path) -> None:
+    far_too_large = {"objects": [{"id": "a", "min": [0, 0], "max": [30, 30]}]}
+    scene = write(tmp_path / "large.scene.json", json.dumps(far_too_large))
+    script = write(tmp_path / "two.layout", "knife right of plate")
+    _, out, _ = deixis("ground", script, scene)
+    assert out.startswith("No object was found.")
+    assert "fits this scene with probability" not in out
+    assert "Without a match, nothing shows whether the description is of this scene." in out
+
+
+def test_an_undecided_match_lists_an_alternative() -> None:
+    _, out, _ = deixis("ground", SCRIPT1, SCENE)
+    rows = [line for line in out.splitlines()[:12] if float(line.split()[2]) < 0.99]
+    assert rows and all(" or " in row for row in rows)

@@ -24,7 +24,7 @@ def test_parse_prints_every_fact_with_its_line() -> None:
     code, out, err = deixis("parse", SCRIPT1)
     assert (code, err) == (0, "")
     assert len(out.splitlines()) == 12
-    assert out.startswith('script1 "Formal dinner, as Figure 7 has it": 12 objects, 11 facts, seen from chair')
+    assert out.startswith('script1 "Formal dinner of Figure 7": 12 objects, 11 facts, seen from chair')
     assert "     6  top_left(bread_plate, dinner_plate)" in out.splitlines()
 
 
@@ -161,12 +161,13 @@ def test_what_lies_on_a_plate_shares_its_sides() -> None:
     }
 
 
-def test_why_not_shows_a_picture_without_the_fact() -> None:
+def test_why_not_shows_a_table_without_the_fact() -> None:
     code, out, err = deixis("infer", SCRIPT1, "--why-not", "left(dessert_fork, soup_spoon)")
     assert (code, err) == (0, "")
     lines = out.splitlines()
     assert lines[0].startswith(
-        "left(dessert_fork, soup_spoon) does not follow: it is false in this picture, where every firm fact holds."
+        "left(dessert_fork, soup_spoon) does not follow: it is false on this table, where every firm fact holds "
+        "(the numbers only order the sides of the boxes)."
     )
     assert "    right edge of dessert_fork <= left edge of soup_spoon" in lines
     _, out, _ = deixis("infer", SCRIPT1, "--why-not", "left(dessert_fork, soup_spoon)", "--json")

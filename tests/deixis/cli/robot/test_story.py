@@ -43,8 +43,8 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], mon
         "left(salad_fork, soup_spoon)   by transitivity",
         "The script contradicts itself",
         "fish knife     dx:FishKnife     lx:lesson/formal_dinner-1",
-        "missing     water_glass",
-        "misplaced   dinner_fork (p3), where dinner_knife belongs",
+        "missing      water_glass",
+        "misplaced    dinner_fork (p3), where dinner_knife belongs",
         "one napkin too many",
         "12 things found on the table",
         "I learned how 'tea' is laid",
@@ -57,6 +57,7 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], mon
         assert picture.stat().st_size > 20_000
     assert str(EXAMPLES) not in told and str(tmp_path) not in told and tempfile.gettempdir() not in told
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert "<p>A person describes how a table is laid." in page
     assert "All of this on one page: out/index.html" in told
     assert [unescape(title) for title in re.findall("<h2>(.*)</h2>", page)] == CHAPTERS
     linked = re.findall('(?:src|href)="([^"]*)"', page)

@@ -143,10 +143,10 @@ def test_a_grounding_teaches_words_by_how_sure_it_is(tmp_path: Path) -> None:
     with Session(tmp_path / "memory") as session:
         session.learn(read_script(text=SCRIPT), table(0.0, 0.27, labels=False))
         (lesson,) = session.recollection().lessons
-        assert lesson.who.things == (0, 1, 2)
-        assert all(0 < sure <= 1 for sure in lesson.who.sureness)
+        assert lesson.matched.things == (0, 1, 2)
+        assert all(0 < sure <= 1 for sure in lesson.matched.sureness)
         learned = session.learn_relations()
-    sure = dict(zip(lesson.description.nodes, lesson.who.sureness, strict=True))
+    sure = dict(zip(lesson.description.nodes, lesson.matched.sureness, strict=True))
     expected = sure["dinner_plate"] * (sure["cup"] + sure["spoon"])
     assert learned.models["horizontal"].provenance.examples == pytest.approx(expected)
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import pyoxigraph as ox
 import pytest
 
-from deixis.learning.lessons.recollection import Recollection, Remembered, Who
+from deixis.learning.lessons.recollection import MatchedThings, Recollection, Remembered
 from deixis.learning.models.sizes import FEWEST, Counts, SizeStatistics, size_views
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel, size_triples, sizes_from_triples
@@ -36,8 +36,8 @@ def seen(
     place = len(lesson) / 100
     thing = PerceivedObject("o1", (place, 0.0), (place + length, length / 2), label, confidence)
     other = PerceivedObject("o2", (2.0, 0.0), (3.0, 1.0))
-    scene, who = Scene((thing, other), unit=unit), Who((0,), (sure,), (decided,))
-    return Remembered(lesson, description, scene, who, ("", lesson))
+    scene, matched = Scene((thing, other), unit=unit), MatchedThings((0,), (sure,), (decided,))
+    return Remembered(lesson, description, scene, matched, ("", lesson))
 
 
 def learned_size_triples(recollection: Recollection, ontology: Ontology) -> list[ox.Triple]:

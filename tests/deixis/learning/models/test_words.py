@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from deixis.learning.lessons.recollection import Recollection, Remembered, Who, labelled, recollect
+from deixis.learning.lessons.recollection import MatchedThings, Recollection, Remembered, labelled, recollect
 from deixis.learning.models.words import fit, informed, new_lessons
 from deixis.ontology.lessons.write import asserted_triples, episode_triples
 from deixis.ontology.models.relations import Term
@@ -38,7 +38,7 @@ def scene(*labels: str, confidence: float = 1.0) -> Scene:
 def remembered(lesson: str, sure: tuple[float, ...] = (1.0,) * 3, texts: tuple[str, str] | None = None) -> Remembered:
     description = read_script(text=SCRIPT).graph()
     places = tuple(list(THINGS).index(name) for name in description.nodes)
-    return Remembered(lesson, description, scene(), Who(places, sure, (True,) * 3), texts or (lesson, ""))
+    return Remembered(lesson, description, scene(), MatchedThings(places, sure, (True,) * 3), texts or (lesson, ""))
 
 
 def examples(*lessons: Remembered) -> float:
@@ -131,7 +131,7 @@ def test_new_examples_become_lessons_once_and_round_trip(tmp_path: Path) -> None
     assert [str(fact) for fact in again.description.facts()] == [str(fact) for fact in script.facts]
     assert examples(again) == pytest.approx(sum(fact.weight for fact in script.facts))
     assert examples(again) < 2  # one fact is hedged
-    assert again.who.decided == (True, True, True)
+    assert again.matched.decided == (True, True, True)
     assert new_lessons([(script, whole)], recollection, [].__contains__)[0] == []
 
 

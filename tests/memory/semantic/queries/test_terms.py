@@ -65,3 +65,11 @@ def test_an_empty_answer_says_so(taught: deixis.Session) -> None:
         assert answer.empty and EMPTY_ANSWER in answer.to_text()
         assert EMPTY_ANSWER in answer._repr_html_()
     assert not taught.query("ASK { ?x a dx:Layout . FILTER(?x = lx:nothing) }").empty
+
+
+def test_an_empty_answer_names_classes_with_subclasses_only(taught: deixis.Session) -> None:
+    for written in ("a dx:Layout", "rdf:type <https://w3id.org/deixis/onto#Layout>"):
+        (_, note) = taught.query(f"SELECT ?x {{ ?x {written} }}").remarks()
+        assert note.endswith("ask for '?x rdfs:subClassOf dx:Layout'")
+    assert taught.query("SELECT ?x { ?x rdfs:subClassOf dx:Layout }").remarks() == ()
+    assert taught.query("SELECT ?x { ?x a dx:Horse }").remarks() == (EMPTY_ANSWER,)

@@ -86,20 +86,21 @@ def test_too_many_subgraphs_use_the_heuristic(
     assert len(found.matches) == len(graph_of(*full_script[:6]).nodes)
 
 
-def test_select_decides_the_criterion_for_subgraphs(
-    graph_of: MakeGraph, full_script: list[str], absent_glasses: list[str]
-) -> None:
-    description = graph_of(*full_script, *absent_glasses)
+def test_select_decides_the_criterion_for_subgraphs(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    """Leave out one of four objects: what satisfies most facts is not what is most similar."""
+    description = graph_of("top(c, d)", "right(a, b)", "left(a, d)", "right(c, b)", nodes="a b c d")
+    boxes = boxes_of([(4, 6), (4, 5)], [(0, 2), (4, 5)], [(2, 3), (3, 4)])
+    question = no_unary_evidence(description, scene_relations(["p", "q", "r"], boxes, R))
     by_facts, by_similarity = (
-        answer(description, formal_setting(), "similarity", select) for select in (Select.FACTS, Select.SIMILARITY)
+        ground(question, engine_named("similarity", select)) for select in (Select.FACTS, Select.SIMILARITY)
     )
-    assert by_similarity.graph_similarity >= by_facts.graph_similarity - 1e-9
-    assert sum(e.degree for e in by_facts.outcomes) >= sum(e.degree for e in by_similarity.outcomes)
+    assert by_similarity.graph_similarity > by_facts.graph_similarity + 0.1
+    assert sum(e.degree for e in by_facts.outcomes) > sum(e.degree for e in by_similarity.outcomes) + 0.4
     assert not by_similarity.proved_best
 
 
 def test_the_exact_value_is_never_below_that_of_the_similarity(graph_of: MakeGraph, full_script: list[str]) -> None:
-    for seed in range(5):
+    for seed in range(3):
         question = evidence(graph_of(*full_script), formal_setting(seed, displacement=0.05))
         exact, similar = (engine_named(engine).align(question, Deadline.after(10.0)) for engine in ENGINES)
         assert question.problem.value(exact.assignment) >= question.problem.value(similar.assignment) - 1e-6
