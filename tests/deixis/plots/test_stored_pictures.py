@@ -36,7 +36,8 @@ def decided_grounding() -> Figure:
 
 
 def doubtful_grounding() -> Figure:
-    return deixis.ground(EXAMPLES / "script1.layout", scene(), sizes=False).plot()
+    """Draw a grounding with enough time to sample the same probabilities on a busy machine."""
+    return deixis.ground(EXAMPLES / "script1.layout", scene(), sizes=False, time_limit=120.0).plot()
 
 
 def check() -> Figure:

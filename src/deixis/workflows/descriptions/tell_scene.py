@@ -18,6 +18,7 @@ from deixis.grammar.reading import StatedFact
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.geometry.overlap import gaps
 from deixis.reasoning.grounding.evidence.claims.aims import stated_direction
 from deixis.reasoning.grounding.evidence.properties.colours import colour_terms
@@ -41,6 +42,9 @@ MAX_MORE = 5
 
 MIN_TIME = 0.5
 """Seconds without which the text is not changed and grounded again."""
+
+NOT_GROUNDED = "time limit reached: whether the text singles out each object was not checked"
+"""Note on a text that was not grounded again."""
 
 UNKNOWN = "thing"
 """Noun for an object without a label."""
@@ -78,6 +82,10 @@ def tell_scene(scene: Scene, all_facts: bool, deadline: Deadline) -> Telling:
     else:
         for attempt in range(MAX_MORE + 1):
             rivals = _rivals(scene, plan, sentences, Deadline.after(deadline.left / 3))
+            if rivals is None:
+                found = dict.fromkeys(scene.ids)
+                notes.append(NOT_GROUNDED)
+                break
             found = {scene.ids[i]: not rivals[i] for i in order}
             lost = [i for i in order if rivals[i]]
             if not lost or attempt == MAX_MORE or deadline.left < MIN_TIME:
@@ -205,12 +213,13 @@ def _directions(scene: Scene, i: int) -> Iterator[Claim]:
 
 def _rivals(
     scene: Scene, plan: Plan, sentences: Sequence[ToldSentence], deadline: Deadline
-) -> dict[int, tuple[int, ...]]:
+) -> dict[int, tuple[int, ...]] | None:
     """Ground the text in the scene, and return the objects that each object could be taken for, itself left out.
 
-    They are all others if the text does not ground the object at all.
+    They are all others if the text does not ground the object at all. None: the time did not suffice to know.
     """
     from deixis.grammar.english.reader import read_english
+    from deixis.reasoning.grounding.answers.answer import Standing
     from deixis.workflows.grounding.ground import ground
 
     everything = range(len(scene.objects))
@@ -220,8 +229,12 @@ def _rivals(
     try:
         script = read_english(" ".join(s.text for s in sentences), "<told>", plan.ontology, deadline)
         grounding = ground(script, scene, time_limit=max(0.1, deadline.left))
+    except OutOfTimeError:
+        return None
     except DeixisError:
         return found
+    if not grounding.finished or grounding.probabilities is Standing.NONE:
+        return None
     assert script.reading is not None
     object_of_name = plan.names_read(script.reading)
     place = {name: i for i, name in enumerate(scene.ids)}

@@ -43,5 +43,5 @@ def test_what_is_not_a_layout_or_a_scene_is_an_error(tmp_path: Path) -> None:
 
 
 def test_the_ids_of_numbered_things_are_printed() -> None:
-    lines = deixis("tell", EXAMPLES / "second_table.scene.json")[1].splitlines()
+    lines = deixis("tell", EXAMPLES / "second_table.scene.json", "--time-limit", 120)[1].splitlines()
     assert lines[-1] == "In the scene, napkin 1 is p6, napkin 2 is p1."

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import deixis
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.workflows.layouts.infer import inference_of
 
 EXAMPLES = Path(deixis.__file__).parents[2] / "examples"
@@ -172,3 +173,17 @@ def test_a_text_without_time_to_read_it_has_a_note() -> None:
     told = deixis.tell(deixis.read_script(text="fork left of plate"), time_limit=0)
     assert told.text == "The fork is left of the plate."
     assert "time limit reached: the text was not read again" in told.notes
+
+
+def test_without_time_to_ground_the_text_nothing_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = EXAMPLES / "second_table.scene.json"
+    plain = deixis.tell(scene, time_limit=120.0)
+
+    def late(*_: object, **__: object) -> None:
+        raise OutOfTimeError("time limit reached")
+
+    monkeypatch.setattr("deixis.workflows.grounding.ground.ground", late)
+    telling = deixis.tell(scene, time_limit=120.0)
+    assert len(telling.facts) <= len(plain.facts)
+    assert {thing.found for thing in telling.objects} == {None}
+    assert "time limit reached: whether the text singles out each object was not checked" in telling.notes
