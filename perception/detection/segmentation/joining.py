@@ -54,7 +54,7 @@ def whole_things(parts: Parts) -> Parts:
         while len(pairs := rule(parts)):
             longest = int(np.argmax(pairs.length))
             parts.join(int(pairs.first[longest]), int(pairs.second[longest]))
-    for each in (enclosed, of_one_colour, insides, on_a_foot, necks, unsupported, lips, handles, insides):
+    for each in (enclosed, of_one_colour, insides, on_a_foot, above_a_foot, necks, unsupported, lips, handles, insides):
         _apply(each, parts)
     for each in (half_hidden_handles, enclosed, end_to_end, sides):
         _apply(each, parts)
@@ -270,6 +270,30 @@ def on_a_foot(parts: Parts, part: int | None = None) -> Pairs:
     narrow = seen.widths[pairs.second] < limits.foot_width_ratio * seen.widths[pairs.first]
     pairs = pairs.where(high[pairs.first] & foot[pairs.second] & same & narrow)
     return _chosen(pairs, lambda glass, foot: inside(parts, foot, glass) > limits.min_foot_inside_share)
+
+
+def above_a_foot(parts: Parts, part: int | None = None) -> Pairs:
+    """Return high parts that nothing seems to hold, above a foot of the same colour: the stem is too thin to be seen.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the high part and its foot, which do not meet.
+    """
+    limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.patch_width, part)
+    glass, foot, middles = pairs.first, pairs.second, seen.middles
+    floats = seen.bottoms[glass] > np.maximum(2 * limits.foot_height, seen.tops[foot])
+    flat = (middles[foot] < limits.foot_height) & (seen.bottoms[foot] < limits.foot_height / 2)
+    narrow = seen.widths[foot] < limits.foot_width_ratio * seen.widths[glass]
+    pairs = pairs.where((pairs.length == 0) & floats & flat & narrow & ~_differ(parts, pairs))
+    return _chosen(pairs, lambda glass, foot: inside(parts, foot, glass) > limits.min_below_bowl_share)
 
 
 def necks(parts: Parts, part: int | None = None) -> Pairs:

@@ -93,9 +93,9 @@ def supporting_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeli
     radius = thing.oriented.extents[0] / 2 + STRIP_MARGIN
     found = []
     for other in others:
-        ends = other.placed_corners
-        aside = float(np.linalg.norm(ends.mean(axis=0)[:2] - middle[:2])) + other.oriented.extents[0] / 2
-        if not (other.first_rest and other.at == thing.at and aside < radius and ends[:, 2].max() < bottom + BEYOND):
+        aside = float(np.quantile(np.linalg.norm(other.placed_points[:, :2] - middle[:2], axis=1), MOSTLY_WITHIN))
+        below = other.placed_corners[:, 2].max() < bottom + BEYOND
+        if not (other.first_rest and other.at == thing.at and aside < radius and below):
             continue
         if not _is_alike(thing, other):
             return []
