@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.tracking.completion.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.completion.missing_parts import BEYOND, MARGIN, FlatThing, revealed_part
-from deixis.perception.tracking.completion.pieces import floating_parts, supporting_parts
+from deixis.perception.tracking.completion.pieces import fits_another, floating_parts, supporting_parts
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Observation, Table
 from deixis.perception.tracking.table.reference import Reference
@@ -54,19 +54,20 @@ def complete(things: Things, table: Table, seen: Observation, settings: Tracking
         thing.align(image, view, taken, reference.points(own, view), table.noise)
     changed = _changed(reference, seen, settings)
 
-    def flat() -> FlatThing:
+    def flat(each: Pipeline) -> FlatThing:
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        return FlatThing(thing, reference, view, eye, table.noise, settings.colour, image, changed, thing.views)
+        return FlatThing(each, reference, view, eye, table.noise, settings.colour, image, changed, each.views)
 
-    around = flat()
+    around = flat(thing)
     resting = [other for other in things.resting if other is not thing]
     parts_below = supporting_parts(thing, resting)
-    merged = list(dict.fromkeys([*around.pieces(resting), *floating_parts(thing, resting), *parts_below]))
+    pieces = [piece for piece in around.pieces(resting) if not fits_another(piece, thing, resting, flat)]
+    merged = list(dict.fromkeys([*pieces, *floating_parts(thing, resting), *parts_below]))
     resting = [other for other in resting if other not in merged]
     parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
     if merged:
         reference.owner.ravel()[parts] = thing.slot
-        around = flat()
+        around = flat(thing)
     new, revealed = around.missing_part(), revealed_part(thing, resting, reference, view)
     thing.views += 1
     thing.cut_off = around.is_cut_off

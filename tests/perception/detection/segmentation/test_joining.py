@@ -84,6 +84,16 @@ def test_a_glass_with_a_stem_joins_its_foot_but_not_a_plate(width: float, count:
     assert len(whole_things(parts)) == count
 
 
+@pytest.mark.parametrize(
+    ("low", "beside", "count"),
+    [(0.1, 0.0, 1), (0.03, 0.0, 2), (0.1, 0.06, 2)],
+    ids=["a bowl above", "a bowl on the table", "something beside it"],
+)
+def test_a_bowl_joins_the_foot_below_it_without_a_stem(low: float, beside: float, count: int) -> None:
+    foot = _grid((beside - 0.03, beside + 0.03), (-0.03, 0.03), 0.004)
+    assert len(whole_things(_apart(foot, _wall(0.035, low, low + 0.1)))) == count
+
+
 def _wall(radius: float, low: float, high: float) -> NDArray[np.float64]:
     """Return patches on the near half of an upright cylinder."""
     turn, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.0, np.pi, AROUND), np.linspace(low, high, ROWS)))
