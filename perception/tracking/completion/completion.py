@@ -18,7 +18,8 @@ CONFIRM_AFTER = 0.3
 """Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
 
 AFTER_HAND = 0.6
-"""Time in seconds since a hand was in view after which a thing that was followed is completed."""
+"""Time in seconds since a hand was in view after which a thing that was followed is completed, and after which one that
+was completed while the hand was in view is completed again."""
 
 AGAIN_AFTER = 1.0
 """Time in seconds after which a moving camera may show the other end of a thing that something partly hides."""
@@ -47,6 +48,7 @@ def complete(things: Things, table: Table, seen: Observation, settings: Tracking
     if thing is None:
         return ()
     thing.completed, thing.completed_at = True, seen.at
+    thing.is_provisional = seen.at - seen.hand_at < AFTER_HAND
     reference, view, image, changes = table.reference, seen.view, seen.image, seen.changes
     own = np.flatnonzero(reference.owner == thing.slot)
     if not thing.first_rest and len(own) >= settings.least_pixels:
@@ -105,6 +107,7 @@ def _next(things: Things, reference: Reference, seen: Observation, settings: Tra
         for thing in things.resting
         if thing.seen_at == at
         and (not thing.completed or (thing.is_suspected and at - thing.completed_at >= CONFIRM_AFTER)
+             or (thing.is_provisional and at - seen.hand_at >= AFTER_HAND)
              or (seen.is_camera_moving and thing.cut_off and at - thing.completed_at >= AGAIN_AFTER))
         and at - max(thing.at, thing.settled_at) >= settings.complete_after and _is_clear(thing, reference, seen)
     )  # fmt: skip
