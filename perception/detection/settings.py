@@ -566,6 +566,8 @@ class LyingSettings(_Thresholds):
     """Minimum number of points that show this surface."""
     min_level_normal: float = 0.85
     """Minimum vertical component of the mean normal of this surface: on a steeper one, things slide off."""
+    min_level_share: float = 0.5
+    """Fraction of the points of an object that must be as level, for something to be looked for on it."""
     min_inside_share: float = 0.9
     """Fraction of a piece that must be within the outline of this surface, so that its height below the piece is not
     extrapolated. Of a piece that is seen beyond it, other evidence is found at its ends."""

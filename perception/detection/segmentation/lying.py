@@ -42,7 +42,8 @@ def with_lying_things(surface: Surface, of: NDArray[np.int32], settings: Detecti
     number = np.full(len(of), -1, np.int32)
     order = np.argsort(of, kind="stable")
     for members in np.split(order, np.cumsum(np.bincount(of))[:-1]):
-        if len(members) < 2 * settings.least_points:
+        level = surface.normals[members, 2] > settings.lying.min_level_normal
+        if len(members) < 2 * settings.least_points or level.mean() < settings.lying.min_level_share:
             continue
         ground = np.median(tints[members], axis=0)
         unlike = np.linalg.norm(tints[members] - ground, axis=1)
@@ -51,13 +52,11 @@ def with_lying_things(surface: Surface, of: NDArray[np.int32], settings: Detecti
         number[members] = np.arange(len(members))
         near = renumbered(surface.neighbours, members, number)
         number[members] = -1
-        below = members[unlike < settings.joining.min_other_colour / 2]
+        bare = unlike < settings.joining.min_other_colour / 2
         for piece in _pieces(tints[members], ground, near, settings):
-            chosen = members[piece]
-            if np.ptp(surface.points[chosen], axis=0).max() < settings.least_length:
-                continue
-            if _is_raised(surface, chosen, np.setdiff1d(below, chosen), settings.lying):
-                result[chosen] = count
+            bare[piece] = False
+            if _is_raised(surface, members[piece], members[bare], settings):
+                result[members[piece]] = count
                 count += 1
     return result
 
@@ -90,25 +89,25 @@ def _connected(
     chosen: NDArray[np.bool_], neighbours: NDArray[np.int32], limits: LyingSettings
 ) -> list[NDArray[np.intp]]:
     """Return the largest connected groups of the chosen points, the largest first."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    from deixis.perception.detection.kernels import groups
 
-    first, column = np.nonzero((neighbours >= 0) & chosen[:, None])
-    second = neighbours[first, column]
-    both = chosen[second]
-    first, second = first[both], second[both]
-    graph = coo_array((np.ones(len(first), np.bool_), (first, second)), shape=(len(chosen), len(chosen)))
-    of = connected_components(graph, directed=False)[1]
+    of = groups(chosen, neighbours)
     sizes = np.bincount(of[chosen], minlength=1)
     largest = np.argsort(-sizes, kind="stable")[: limits.max_pieces]
-    return [np.flatnonzero(chosen & (of == k)) for k in largest.tolist() if sizes[k] >= limits.min_core_points]
+    return [np.flatnonzero(of == k) for k in largest.tolist() if sizes[k] >= limits.min_core_points]
 
 
-def _is_raised(surface: Surface, piece: NDArray[np.intp], below: NDArray[np.intp], limits: LyingSettings) -> bool:
+def _is_raised(surface: Surface, piece: NDArray[np.intp], below: NDArray[np.intp], settings: DetectionSettings) -> bool:
     """Return True if a piece lies on a level surface that is seen around it, and is a little higher than it."""
     from scipy.spatial import ConvexHull, QhullError, cKDTree
 
-    places = surface.points[piece]
+    limits, places, plan = settings.lying, surface.points[piece], surface.points[below, :2]
+    low, high = places.min(axis=0), places.max(axis=0)
+    if (high - low).max() < settings.least_length:
+        return False
+    below = below[((plan > low[:2] - limits.reach) & (plan < high[:2] + limits.reach)).all(axis=1)]
+    if len(below) < limits.min_ring_points or surface.normals[below, 2].mean() < limits.min_level_normal:
+        return False
     away = cKDTree(places[:, :2]).query(surface.points[below, :2])[0]
     ring = below[(away > limits.edge) & (away < limits.reach)]
     if len(ring) < limits.min_ring_points or surface.normals[ring, 2].mean() < limits.min_level_normal:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from deixis.perception.detection.segmentation.lying import with_lying_things
 from deixis.perception.detection.segmentation.neighbours import neighbour_table
@@ -12,7 +13,9 @@ SIDE = 90
 CREAM, STEEL = (235, 225, 210), (140, 145, 155)
 
 
-def _plate(rise: float, colour: tuple[int, int, int], slope: float = 0.0, noise: float = 0.0012) -> tuple[Surface, ...]:
+def _plate(
+    rise: float, colour: tuple[int, int, int], slope: float = 0.0, noise: float = 0.0012
+) -> tuple[Surface, NDArray[np.bool_]]:
     """Return a sloping square of 18 cm with a strip of 10 by 1 cm on it, and a mask of the strip."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 0.18, SIDE), np.linspace(0, 0.18, SIDE)))
     strip = (abs(x - 0.09) < 0.05) & (abs(y - 0.09) < 0.006)
