@@ -54,10 +54,11 @@ def whole_things(parts: Parts) -> Parts:
         while len(pairs := rule(parts)):
             longest = int(np.argmax(pairs.length))
             parts.join(int(pairs.first[longest]), int(pairs.second[longest]))
-    for each in (enclosed, of_one_colour, insides, on_a_foot, above_a_foot, necks, unsupported, lips, handles, insides):
+    for each in (enclosed, of_one_colour, insides, on_a_foot, necks, unsupported, lips, handles, insides):
         _apply(each, parts)
     for each in (half_hidden_handles, enclosed, end_to_end, sides):
         _apply(each, parts)
+    _apply(above_a_foot, parts)  # last: in the image, a foot also meets the glass before it, in other ways than a bowl
     return parts
 
 
