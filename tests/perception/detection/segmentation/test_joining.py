@@ -102,7 +102,7 @@ def _wall(radius: float, low: float, high: float) -> NDArray[np.float64]:
 
 def test_a_foot_does_not_join_its_bowl_to_the_glass_before_it() -> None:
     front, near_side, foot = _wall(0.035, 0.0, 0.2), _wall(0.035, 0.12, 0.2), _grid((-0.03, 0.03), (0.04, 0.09), 0.004)
-    bowl = np.concatenate([near_side, near_side * (1, -1, 1)]) + (0.0, 0.065, 0.0)
+    bowl = np.concatenate([near_side, near_side * (1, -1, 1)]) + np.array([0.0, 0.065, 0.0])
     out = near_side * (1, 1, 0) / 0.035
     normals = np.concatenate(
         [front * (1, 1, 0) / 0.035, out, -out * (1, -1, 1), np.tile([0.0, 0.0, 1.0], (len(foot), 1))]
