@@ -15,6 +15,7 @@ from deixis.perception.detection.left_out import Above, Fate, Pieces, holes, lef
 from deixis.perception.detection.outline import hull_of, occupied_cells, oriented_box, rim_of, upright_box
 from deixis.perception.detection.segmentation.boundaries import agglomerated, boundaries
 from deixis.perception.detection.segmentation.joining import whole_things
+from deixis.perception.detection.segmentation.lying import with_lying_things
 from deixis.perception.detection.segmentation.neighbours import NEIGHBOURS, has_enough, neighbour_table
 from deixis.perception.detection.segmentation.parts import Parts
 from deixis.perception.detection.segmentation.supervoxels import supervoxels
@@ -458,6 +459,8 @@ def _pieces(
 def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]:
     """Return the object of each point of a surface, shape (n,), from 0: supervoxels are merged, then joined.
 
+    Thin things that have another colour than the thing on which they lie are separated from it afterwards.
+
     Parameters
     ----------
     surface
@@ -473,7 +476,8 @@ def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]
     patches = supervoxels(surface, settings.supervoxels)
     meeting = boundaries(surface, patches, settings)
     regions = agglomerated(meeting, patches.tints, patches.weights, settings.boundaries)
-    return whole_things(Parts(regions, patches, meeting, settings.joining)).of[patches.of]
+    things = whole_things(Parts(regions, patches, meeting, settings.joining)).of[patches.of]
+    return with_lying_things(surface, things, settings)
 
 
 def _nothing(cloud: PointCloud, view: View, settings: DetectionSettings, why: str) -> Detection:

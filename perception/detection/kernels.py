@@ -127,6 +127,27 @@ def grown(seeds, allowed, neighbours):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
+def groups(chosen, neighbours):  # type: ignore[no-untyped-def]
+    """Return the connected group of each chosen point, numbered from 0 by its first point; -1 for the others."""
+    of = np.full(len(chosen), -1, np.int32)
+    stack = np.empty(len(chosen), np.int64)
+    found = 0
+    for i in range(len(chosen)):
+        if not chosen[i] or of[i] >= 0:
+            continue
+        of[i], stack[0], count = found, i, 1
+        while count:
+            count -= 1
+            for j in neighbours[stack[count]]:
+                if j >= 0 and chosen[j] and of[j] < 0:
+                    of[j] = found
+                    stack[count] = j
+                    count += 1
+        found += 1
+    return of
+
+
+@njit(cache=True, nogil=True)
 def pixel_neighbours(number, row, column, steps, table):  # type: ignore[no-untyped-def]
     """Fill empty entries of a table (n, 8) with the pixels at a distance of ``steps``, in place.
 

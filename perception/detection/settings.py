@@ -491,6 +491,9 @@ class JoiningSettings(_Thresholds):
     min_foot_inside_share: float = 0.1
     """Fraction of a foot that must be below its glass; the rest may be visible beside it. If tenfold (never true),
     simulated settings 0 to 5 have one part more each."""
+    min_below_bowl_share: float = 0.5
+    """Fraction of a foot that must be below its glass if the two do not meet, so that something beside a glass whose
+    foot is hidden is not its foot. Tested by test_a_bowl_joins_the_foot_below_it_without_a_stem."""
     bottle_slenderness: float = 1.2
     """Minimum ratio of height to width of a bottle, so that objects on cups are not necks. Tested by
     test_a_neck_joins_the_bottle_below_its_middle[a thing on a cup]."""
@@ -545,6 +548,38 @@ class JoiningSettings(_Thresholds):
     """Metres. The lowest places of the head and handle of one piece of cutlery differ by less, however it is arched;
     those of cutlery on the rim of a plate and of cutlery beside the plate differ by more. If doubled, simulated
     settings 1 and 7 have one part fewer each; see test_two_pieces_in_a_line_join_if_their_heights_allow_it."""
+
+
+@dataclass(frozen=True, slots=True)
+class LyingSettings(_Thresholds):
+    """Separation of thin things of another colour from the thing that they lie on."""
+
+    min_core_points: int = 12
+    """Minimum number of connected points that clearly have another colour than the rest of an object."""
+    max_pieces: int = 20
+    """Maximum number of such pieces of an object that are examined, the largest ones; an object with more is motley."""
+    edge: float = 0.004
+    """Metres around a piece in which the points may show both it and what is below."""
+    reach: float = 0.025
+    """Metres around a piece in which the surface below it is compared."""
+    min_ring_points: int = 80
+    """Minimum number of points that show this surface."""
+    min_level_normal: float = 0.85
+    """Minimum vertical component of the mean normal of this surface: on a steeper one, things slide off."""
+    min_level_share: float = 0.5
+    """Fraction of the points of an object that must be as level, for something to be looked for on it."""
+    min_inside_share: float = 0.9
+    """Fraction of a piece that must be within the outline of this surface, so that its height below the piece is not
+    extrapolated. Of a piece that is seen beyond it, other evidence is found at its ends."""
+    min_rise: float = 0.0015
+    """Metres by which a piece is higher than the surface below it, as a mean; a print is not. Tested by
+    test_a_raised_strip_of_another_colour_is_separated."""
+    max_rise: float = 0.02
+    """Maximum of that height in metres; the shape of a higher thing shows that it is another one."""
+    rise_noise_ratio: float = 5.0
+    """Minimum of that height in standard deviations of its mean."""
+    correlated_points: float = 9.0
+    """Number of adjacent points that share their noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -672,7 +707,8 @@ class DetectionSettings:
         Minimum number of points of an object, and its minimum length in metres.
     concavity, step
         Angle between two surfaces in radians, and height between them in metres, at which they are two objects.
-    scale, density, plane, viewpoint, top, heights, surface, supervoxels, boundaries, joining, outlines, notes
+    scale, density, plane, viewpoint, top, heights, surface, supervoxels, boundaries, joining, lying, outlines,
+    notes
         Thresholds of the steps.
     """
 
@@ -697,6 +733,7 @@ class DetectionSettings:
     supervoxels: SupervoxelSettings = field(default_factory=SupervoxelSettings)
     boundaries: BoundarySettings = field(default_factory=BoundarySettings)
     joining: JoiningSettings = field(default_factory=JoiningSettings)
+    lying: LyingSettings = field(default_factory=LyingSettings)
     outlines: OutlineSettings = field(default_factory=OutlineSettings)
     notes: NoteSettings = field(default_factory=NoteSettings)
 

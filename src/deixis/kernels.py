@@ -183,7 +183,7 @@ def _read_clouds() -> None:
 
 
 def compile_detection() -> None:
-    """Detect a block on a table, in an image and in bare points."""
+    """Detect a printed block on a table, in an image and in bare points."""
     import numpy as np
 
     from deixis.perception.clouds.cloud import PointCloud
@@ -192,9 +192,11 @@ def compile_detection() -> None:
     x_and_y = np.mgrid[-0.3:0.3:0.01, 0.5:1.1:0.01]
     x, y = x_and_y.reshape(2, -1)
     block = (abs(x) < 0.05) & (abs(y - 0.8) < 0.05)
-    points = np.stack([x, y, np.where(block, -0.64, -0.7)], axis=1)
-    detect(PointCloud(points.astype(np.float32)))
-    detect(PointCloud(points.astype(np.float32), organised=x_and_y.shape[1:]))
+    points = np.stack([x, y, np.where(block, -0.64, -0.7)], axis=1).astype(np.float32)
+    print_on_it = (abs(x) < 0.03) & (abs(y - 0.8) < 0.04)
+    colours = np.where(print_on_it[:, None], (200, 30, 30), (200, 200, 200)).astype(np.uint8)
+    detect(PointCloud(points))
+    detect(PointCloud(points, colours, organised=x_and_y.shape[1:]))
 
 
 def compile_features() -> None:

@@ -58,6 +58,7 @@ def whole_things(parts: Parts) -> Parts:
         _apply(each, parts)
     for each in (half_hidden_handles, enclosed, end_to_end, sides):
         _apply(each, parts)
+    _apply(above_a_foot, parts)  # last: in the image, a foot also meets the glass before it, in other ways than a bowl
     return parts
 
 
@@ -270,6 +271,30 @@ def on_a_foot(parts: Parts, part: int | None = None) -> Pairs:
     narrow = seen.widths[pairs.second] < limits.foot_width_ratio * seen.widths[pairs.first]
     pairs = pairs.where(high[pairs.first] & foot[pairs.second] & same & narrow)
     return _chosen(pairs, lambda glass, foot: inside(parts, foot, glass) > limits.min_foot_inside_share)
+
+
+def above_a_foot(parts: Parts, part: int | None = None) -> Pairs:
+    """Return high parts that nothing seems to hold, above a foot of the same colour: the stem is too thin to be seen.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the high part and its foot, which do not meet.
+    """
+    limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.patch_width, part)
+    glass, foot, middles = pairs.first, pairs.second, seen.middles
+    floats = seen.bottoms[glass] > np.maximum(2 * limits.foot_height, seen.tops[foot])
+    flat = (middles[foot] < limits.foot_height) & (seen.bottoms[foot] < limits.foot_height / 2)
+    narrow = seen.widths[foot] < limits.foot_width_ratio * seen.widths[glass]
+    pairs = pairs.where((pairs.length == 0) & floats & flat & narrow & ~_differ(parts, pairs))
+    return _chosen(pairs, lambda glass, foot: inside(parts, foot, glass) > limits.min_below_bowl_share)
 
 
 def necks(parts: Parts, part: int | None = None) -> Pairs:

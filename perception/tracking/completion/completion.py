@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.tracking.completion.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.completion.missing_parts import BEYOND, MARGIN, FlatThing, revealed_part
-from deixis.perception.tracking.completion.pieces import floating_parts, supporting_parts
+from deixis.perception.tracking.completion.pieces import fits_another, floating_parts, supporting_parts
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Observation, Table
 from deixis.perception.tracking.table.reference import Reference
@@ -18,7 +18,8 @@ CONFIRM_AFTER = 0.3
 """Time in seconds after which what a moving camera may have shown of a thing is compared with the next view."""
 
 AFTER_HAND = 0.6
-"""Time in seconds since a hand was in view after which a thing that was followed is completed."""
+"""Time in seconds since a hand was in view after which a thing that was followed is completed, and after which one that
+was completed while the hand was in view is completed again."""
 
 AGAIN_AFTER = 1.0
 """Time in seconds after which a moving camera may show the other end of a thing that something partly hides."""
@@ -47,6 +48,7 @@ def complete(things: Things, table: Table, seen: Observation, settings: Tracking
     if thing is None:
         return ()
     thing.completed, thing.completed_at = True, seen.at
+    thing.is_provisional = seen.at - seen.hand_at < AFTER_HAND
     reference, view, image, changes = table.reference, seen.view, seen.image, seen.changes
     own = np.flatnonzero(reference.owner == thing.slot)
     if not thing.first_rest and len(own) >= settings.least_pixels:
@@ -54,19 +56,20 @@ def complete(things: Things, table: Table, seen: Observation, settings: Tracking
         thing.align(image, view, taken, reference.points(own, view), table.noise)
     changed = _changed(reference, seen, settings)
 
-    def flat() -> FlatThing:
+    def flat(each: Pipeline) -> FlatThing:
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        return FlatThing(thing, reference, view, eye, table.noise, settings.colour, image, changed, thing.views)
+        return FlatThing(each, reference, view, eye, table.noise, settings.colour, image, changed, each.views)
 
-    around = flat()
+    around = flat(thing)
     resting = [other for other in things.resting if other is not thing]
     parts_below = supporting_parts(thing, resting)
-    merged = list(dict.fromkeys([*around.pieces(resting), *floating_parts(thing, resting), *parts_below]))
+    pieces = [piece for piece in around.pieces(resting) if not fits_another(piece, thing, resting, flat)]
+    merged = list(dict.fromkeys([*pieces, *floating_parts(thing, resting), *parts_below]))
     resting = [other for other in resting if other not in merged]
     parts = np.flatnonzero(np.isin(reference.owner, [piece.slot for piece in merged]))
     if merged:
         reference.owner.ravel()[parts] = thing.slot
-        around = flat()
+        around = flat(thing)
     new, revealed = around.missing_part(), revealed_part(thing, resting, reference, view)
     thing.views += 1
     thing.cut_off = around.is_cut_off
@@ -104,6 +107,7 @@ def _next(things: Things, reference: Reference, seen: Observation, settings: Tra
         for thing in things.resting
         if thing.seen_at == at
         and (not thing.completed or (thing.is_suspected and at - thing.completed_at >= CONFIRM_AFTER)
+             or (thing.is_provisional and at - seen.hand_at >= AFTER_HAND)
              or (seen.is_camera_moving and thing.cut_off and at - thing.completed_at >= AGAIN_AFTER))
         and at - max(thing.at, thing.settled_at) >= settings.complete_after and _is_clear(thing, reference, seen)
     )  # fmt: skip

@@ -130,6 +130,24 @@ def revealed_part(
     return new if len(new) >= MIN_PART else new[:0]
 
 
+def joint_length(one: Pipeline, other: Pipeline) -> float:
+    """Return the length of the thing of which two things at rest are the ends, in metres.
+
+    Parameters
+    ----------
+    one, other
+        Things at rest.
+
+    Returns
+    -------
+    float
+        Distance of the outer ends.
+    """
+    middles = [np.array(each.oriented.centre) + each.pose[:3, 3] for each in (one, other)]
+    ends = (one.oriented.extents[0] + other.oriented.extents[0]) / 2
+    return float(np.linalg.norm(middles[0] - middles[1])) + ends
+
+
 class FlatThing:
     """Flat thing at rest, with the table, or the thing that it lies on, and the other things around it.
 
@@ -313,10 +331,7 @@ class FlatThing:
                 continue
             if not fits or not any(self._leads_to(own, line) for line in (self._line, self._line_to(thing))):
                 continue
-            both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
-            other = np.array(thing.oriented.centre) + thing.pose[:3, 3]
-            length = (thing.oriented.extents[0] + self._thing.oriented.extents[0]) / 2
-            if float(np.linalg.norm(both - other)) + length <= MAX_LENGTH:
+            if joint_length(thing, self._thing) <= MAX_LENGTH:
                 found.append(thing)
         return found
 

@@ -5,12 +5,19 @@ A piece is a handle or a stem that the first look took for a thing of its own, o
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.tracking.completion.missing_parts import BEYOND, FLAT, MIN_BEFORE, STRIP_MARGIN
+from deixis.perception.tracking.completion.missing_parts import (
+    BEYOND,
+    FLAT,
+    MIN_BEFORE,
+    STRIP_MARGIN,
+    FlatThing,
+    joint_length,
+)
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Table
@@ -39,6 +46,36 @@ mean likeness of their colours in any light."""
 
 MOSTLY_WITHIN = 0.9
 """Minimum share of the points of a piece within the box of its thing, at which it need not touch the thing."""
+
+
+def fits_another(
+    piece: Pipeline, thing: Pipeline, others: Iterable[Pipeline], flat: Callable[[Pipeline], FlatThing]
+) -> bool:
+    """Return True if a piece of a thing completes another thing as well, to a shorter one.
+
+    Of the two ends of a fork whose middle a glass hides, one may lie in the line of a spoon behind the glass.
+
+    Parameters
+    ----------
+    piece, thing
+        A piece, and the thing that it seems to complete.
+    others
+        Things at rest that it may complete instead.
+    flat
+        Function that returns a thing with what is around it.
+
+    Returns
+    -------
+    bool
+        True if the piece and one of the others, which is nearer to it, are the ends of one thing.
+    """
+    length = joint_length(piece, thing)
+    for other in others:
+        if other is not piece and other is not thing and joint_length(piece, other) < length:
+            shorter, longer = sorted((piece, other), key=lambda each: each.oriented.extents[0])
+            if flat(longer).pieces([shorter]):
+                return True
+    return False
 
 
 def floating_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeline]:
@@ -93,9 +130,9 @@ def supporting_parts(thing: Pipeline, others: Iterable[Pipeline]) -> list[Pipeli
     radius = thing.oriented.extents[0] / 2 + STRIP_MARGIN
     found = []
     for other in others:
-        ends = other.placed_corners
-        aside = float(np.linalg.norm(ends.mean(axis=0)[:2] - middle[:2])) + other.oriented.extents[0] / 2
-        if not (other.first_rest and other.at == thing.at and aside < radius and ends[:, 2].max() < bottom + BEYOND):
+        aside = float(np.quantile(np.linalg.norm(other.placed_points[:, :2] - middle[:2], axis=1), MOSTLY_WITHIN))
+        below = other.placed_corners[:, 2].max() < bottom + BEYOND
+        if not (other.first_rest and other.at == thing.at and aside < radius and below):
             continue
         if not _is_alike(thing, other):
             return []

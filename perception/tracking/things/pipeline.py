@@ -131,6 +131,8 @@ class Pipeline:
     """True if it was completed during its present rest, from the present side of the table."""
     completed_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it was last completed."""
+    is_provisional: bool = field(default=False, init=False)
+    """True if a hand, which may have hidden parts of it, was in view shortly before it was last completed."""
     cut_off: bool = field(default=False, init=False)
     """True if something may have hidden its continuation when it was last completed."""
     views: int = field(default=0, init=False)

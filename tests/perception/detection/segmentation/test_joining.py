@@ -84,10 +84,41 @@ def test_a_glass_with_a_stem_joins_its_foot_but_not_a_plate(width: float, count:
     assert len(whole_things(parts)) == count
 
 
+@pytest.mark.parametrize(
+    ("low", "beside", "count"),
+    [(0.1, 0.0, 1), (0.03, 0.0, 2), (0.1, 0.06, 2)],
+    ids=["a bowl above", "a bowl on the table", "something beside it"],
+)
+def test_a_bowl_joins_the_foot_below_it_without_a_stem(low: float, beside: float, count: int) -> None:
+    foot = _grid((beside - 0.03, beside + 0.03), (-0.03, 0.03), 0.004)
+    assert len(whole_things(_apart(foot, _wall(0.035, low, low + 0.1)))) == count
+
+
 def _wall(radius: float, low: float, high: float) -> NDArray[np.float64]:
     """Return patches on the near half of an upright cylinder."""
     turn, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.0, np.pi, AROUND), np.linspace(low, high, ROWS)))
     return np.stack([radius * np.cos(turn), -radius * np.sin(turn), z], axis=1)
+
+
+def test_a_foot_does_not_join_its_bowl_to_the_glass_before_it() -> None:
+    front, near_side, foot = _wall(0.035, 0.0, 0.2), _wall(0.035, 0.12, 0.2), _grid((-0.03, 0.03), (0.04, 0.09), 0.004)
+    bowl = np.concatenate([near_side, near_side * (1, -1, 1)]) + np.array([0.0, 0.065, 0.0])
+    out = near_side * (1, 1, 0) / 0.035
+    normals = np.concatenate(
+        [front * (1, 1, 0) / 0.035, out, -out * (1, -1, 1), np.tile([0.0, 0.0, 1.0], (len(foot), 1))]
+    )
+    middles = np.concatenate([front, bowl, foot])
+    ones, number = np.ones(len(middles)), np.arange(len(middles), dtype=np.int32)
+    of = np.repeat([0, 1, 2], [len(front), len(bowl), len(foot)]).astype(np.int32)
+    patches = Supervoxels(number, ones, middles, normals, np.zeros_like(middles), 1e-4 * ones, SupervoxelSettings())
+    rim = len(front) - AROUND + np.arange(AROUND)
+    pairs = np.stack([rim, len(front) + np.arange(AROUND)], axis=1).astype(np.int64)
+    parts = Parts(
+        of, patches, Boundaries(pairs, np.ones(AROUND), np.full(AROUND, 1.2), np.ones(AROUND)), JoiningSettings()
+    )
+    assert -0.1 < parts.measures.bulge[1] < 0.1, "both sides of the bowl are seen"
+    found = whole_things(parts).of
+    assert found[0] != found[len(front)] == found[-1]
 
 
 @pytest.mark.parametrize(

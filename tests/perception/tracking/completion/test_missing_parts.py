@@ -6,6 +6,7 @@ from flat_tables import BLUE, KNIFE, OPTICS, SHADED, SHAPE, STEEL, WHITE, WOOD, 
 
 from deixis.perception.scene import OrientedBox
 from deixis.perception.tracking.completion.missing_parts import FlatThing, revealed_part
+from deixis.perception.tracking.completion.pieces import fits_another
 from deixis.perception.tracking.frames.image import FrameImage
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER
@@ -152,6 +153,21 @@ def test_short_ends_of_one_thing_are_joined_behind_another() -> None:
     assert flat(thing_at(handle, 1), on).pieces([end]) == [end]
     lay(on, np.s_[15:45, 45:61], WOOD, TABLE)
     assert flat(thing_at(handle, 1), on).pieces([end]) == [], "nothing hides what is between them"
+
+
+def test_piece_belongs_to_the_nearer_of_two_ends() -> None:
+    on = table()
+    tip, handle, knife = np.s_[29:32, 42:45], np.s_[29:32, 61:66], np.s_[46:58, 42:45]
+    lay(on, np.s_[15:45, 45:61], BLUE, 4, 0.15)
+    lay(on, np.s_[32:46, 38:61], BLUE, 4, 0.15)
+    for slot, place in enumerate((tip, handle, knife), start=1):
+        lay(on, place, STEEL, slot)
+    end, other, long = (thing_at(place, slot) for slot, place in enumerate((tip, handle, knife), start=1))
+    long.oriented = OrientedBox((0.0, 0.0, 0.0), np.pi / 2, (0.06, 0.015, 0.01))
+    assert flat(long, on).pieces([end, other]) == [end]
+    assert fits_another(end, long, [end, other], lambda each: flat(each, on))
+    assert not fits_another(end, long, [end], lambda each: flat(each, on))
+    assert not fits_another(end, other, [end, long], lambda each: flat(each, on)), "the knife is farther away"
 
 
 def test_pieces_are_joined_by_their_middle_that_comes_into_view() -> None:

@@ -30,6 +30,15 @@ def test_stem_and_foot_are_parts_of_the_bowl_above(
     assert supporting_parts(foot, [bowl]) == []
 
 
+def test_half_hidden_foot_is_a_part_of_the_bowl_above() -> None:
+    bowl, foot = thing_at(np.s_[20:40, 50:70], 1, BLUE), thing_at(np.s_[20:40, 50:60], 2, BLUE)
+    bowl.pose = bowl.pose.copy()
+    bowl.pose[2, 3] += 0.1
+    disc = np.linalg.norm(foot.placed_points[:, :2] - bowl.pose[:2, 3], axis=1) < 0.05
+    foot.cloud = foot.cloud.take(disc)
+    assert supporting_parts(bowl, [foot]) == [foot], "the middle of what is seen of it is not below the bowl"
+
+
 @pytest.mark.parametrize(("is_hidden", "stands"), [(True, True), (False, False)])
 def test_thing_with_a_hidden_foot_stands_on_the_table(is_hidden: bool, stands: bool) -> None:
     on, glass = table(), thing_at(np.s_[25:35, 55:65], 1, BLUE)
