@@ -15,6 +15,7 @@ from deixis.grammar.recall.questions import is_question
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.predicates import CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
 from deixis.memory.errors import MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
@@ -25,11 +26,10 @@ from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
-from deixis.robot.live.senses import ENDED, MIN_DURATION, SAID, TABLE, WATCHED, named
+from deixis.robot.live.senses import ENDED, MIN_DURATION, TABLE, WATCHED, named
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
-from deixis.workflows.knowledge.recall import CALLED, CONTRADICTED, EXPECTED, IS_A, SAME_AS
 from deixis.workflows.scenes.point import MIN_CONFIDENCE
 
 SAYS, DONE = "says", "done"

@@ -30,6 +30,7 @@ from deixis.grammar.activities import announced_thing
 from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.fluents.changes import Add, Change, Delete, Finish, Logged, Update
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.predicates import AT, CALLED, NOT_CALLED, POINTED_AT, SAID
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.aim import SURE, Pointing, pointed_at
@@ -46,7 +47,6 @@ from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.story import Event, Story, StorySettings
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
-from deixis.workflows.knowledge.recall import CALLED, NOT_CALLED
 from deixis.workflows.scenes.point import (
     MIN_CONFIDENCE,
     MIN_SIZE_FIT,
@@ -60,11 +60,11 @@ from deixis.workflows.scenes.point import (
     without_correction,
 )
 
-AT, TABLE, WATCHED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
-    "at", "lookedLike", "watched", "pointedAt", "said", "typed", "noticed", "dropped", "began", "ended",
+TABLE, WATCHED, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
+    "lookedLike", "watched", "typed", "noticed", "dropped", "began", "ended",
 )  # fmt: skip
-"""Predicates: the box of a thing, the file of the scene, that the table is in view and does not change, what a person
-pointed at, said and typed, what the robot noticed, the number of late frames, and the ends of the story."""
+"""Predicates: the file of the scene, that the table is in view and does not change, what a person typed, what the robot
+noticed, the number of late frames, and the ends of the story."""
 
 STILL_SECONDS = 0.6
 """Seconds without movement after which the table is written as a scene."""

@@ -14,31 +14,20 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
-from deixis.answers import Answer, count
+from deixis.answers import Answer
 from deixis.arguments import checks_arguments
 from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuestionError, When, read_question
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.predicates import AT, CONTRADICTED, EXPECTED, IS_A, NAMED, SAID, SAME_AS
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
 from deixis.ontology.inflection import singular
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.errors import SettingError
+from deixis.workflows.knowledge.recall_wording import clock_time, distinct, fact_words, sentence
 
 if TYPE_CHECKING:
     from deixis.memory.episodes.search import Episodes
-
-AT, IS_A, SAID, POINTED_AT = "at", "isA", "said", "pointedAt"
-"""Predicates of situations: the box of a thing, its category, what a person said, and what a person pointed at."""
-
-CALLED, NOT_CALLED = "called", "notCalled"
-"""Predicates of the names that a person gives to a tracked thing, and of those that the person denies."""
-
-NAMED = frozenset({IS_A, CALLED})
-"""Predicates of the statements with which a person shows a thing."""
-
-EXPECTED, SAME_AS, CONTRADICTED = "expected", "sameAs", "contradicted"
-"""Predicates of objects that a person said are there: the words, the thing that it turned out to be, and the reason why
-it is no longer expected."""
 
 MOMENT = 1e-3
 """Seconds between *before* or *after* a moment and the moment itself."""
@@ -467,9 +456,9 @@ class _Remembering:
             return Recall(question, (), search, f"Not known: {reason}.", reason, self.asked, self.board.origin)
         made = Recall(question, self._named(found), search, "", None, self.asked, self.board.origin)
         if otherwise:
-            sentences = "; ".join(_distinct(_fact(made, fact) for fact in self._named(otherwise)))
+            sentences = "; ".join(distinct(fact_words(made, fact) for fact in self._named(otherwise)))
             return replace(made, answer=f"No: {sentences}.")
-        return replace(made, answer=_sentence(made))
+        return replace(made, answer=sentence(made))
 
     def _named(self, found: Iterable[EpisodicFluent]) -> tuple[Recalled, ...]:
         """Return fluents with the names that their things had."""
@@ -502,7 +491,7 @@ class _Remembering:
             gone = self.event_search(Event.GOES, self.resolve(question.thing or ""), -math.inf, self.asked, Pick.LAST)
             found = gone.run(self.board)
             if found:
-                clock = _clock(self._moment(found[-1].finish.upper), self._present())
+                clock = clock_time(self._moment(found[-1].finish.upper), self._present())
                 return f"the {question.thing} has been gone since {clock}"
             return f"no place of the {question.thing} is recorded"
         if question.kind == "where" and question.when.kind == "before":
@@ -561,107 +550,3 @@ def _local_span(moment: Moment, present: datetime) -> tuple[datetime, datetime]:
         raise RecallQuestionError(f"'{moment.value}' is not a time; write, say, '12:30', '3 pm' or 'noon'") from error
     then = then if then <= present else then - timedelta(days=1)
     return then, then
-
-
-# ---- sentences
-
-
-def _sentence(found: Recall) -> str:
-    """Return the answer to a question in words."""
-    question, facts = found.question, found.facts
-    kind = question.kind
-    if kind == "whether_there" and all(fact.fluent.statement.predicate == EXPECTED for fact in facts):
-        sure = max(fact.fluent.certainty for fact in facts)
-        statement = "; ".join(_distinct(_fact(found, fact) for fact in facts))
-        return f"Probably{'' if sure >= 0.5 else ' not'}: {statement}."
-    if kind in ("whether", "whether_there"):
-        return f"Yes: {'; '.join(_fact(found, fact) for fact in facts)}."
-    if kind in ("how_many", "how_many_did", "how_many_shown"):
-        number = len({fact.fluent.statement.subject for fact in facts})
-        return f"{number}: {', '.join(sorted(_distinct(f'the {fact.name}' for fact in facts)))}."
-    if kind in ("gone", "come", "moved", "when_did", "whether_did", "how_often"):
-        words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[question.event or kind]
-        edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
-        sentences = _distinct(f"the {fact.name} {words} {_time_phrase(found, end.lower, end.upper)}{_source(fact)}"
-                         for fact, end in zip(facts, edge, strict=True))  # fmt: skip
-        if kind == "how_often":
-            return f"{count(len(sentences), 'time')}: {'; '.join(sentences)}."
-        return f"Yes: {'; '.join(sentences)}." if kind == "whether_did" else _capital("; ".join(sentences))
-    if kind in ("shown", "who"):
-        sentences = _distinct(
-            f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "
-            f"{fact.name} {_time_phrase(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
-            for fact in facts
-        )
-        return _capital("; ".join(sentences))
-    return _capital("; ".join(_distinct(_fact(found, fact) for fact in facts)))
-
-
-def _distinct(parts: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(parts))
-
-
-def _capital(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}" + ("" if text.endswith(("?", "!")) else ".")
-
-
-def _fact(found: Recall, fact: Recalled) -> str:
-    """Return a fluent in words: *the fork was on the plate from 12:00:01 to 12:03:05 (seen)*."""
-    statement, fluent = fact.fluent.statement, fact.fluent
-    words = (statement.object or "").rstrip(".!")
-    start = "" if math.isinf(fluent.start.lower) else f" from {_time(found, fluent.start.lower, fluent.start.upper)}"
-    finish = "" if fluent.is_open else f" to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-    since = f" since {_time(found, fluent.start.lower, fluent.start.upper)}" if start and fluent.is_open else ""
-    verb = "has been" if since else "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
-    if statement.predicate == SAID:
-        return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
-    elif statement.predicate == EXPECTED:
-        sentence = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
-        if not fluent.is_open:
-            return f"{sentence}; expected until {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-        return f"{sentence}; the {fact.name} has not been seen yet, probability {fluent.certainty:.2g}"
-    elif statement.predicate in (CONTRADICTED, SAME_AS):
-        then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
-        if statement.predicate == CONTRADICTED:
-            return f"the {fact.name} was not there {then}: {statement.object}{_source(fact)}"
-        return f"the {fact.name} was seen {then}: {statement.object}{_source(fact)}"
-    elif statement.predicate == AT:
-        text = f"the {fact.name} {verb} there"
-    elif statement.predicate == IS_A:
-        text = f"{statement.subject} {verb} a {fact.other}"
-    else:
-        relation = default_ontology().relations.get(statement.predicate)
-        words = relation.phrase if relation is not None else statement.predicate.replace("_", " ")
-        other = "" if fact.other is None else f" the {fact.other}"
-        text = f"the {fact.name} {verb} {words}{other}"
-    return f"{text}{since or start + finish}{_source(fact)}"
-
-
-def _source(fact: Recalled) -> str:
-    sure = "" if fact.fluent.certainty == 1 else f", certainty {fact.fluent.certainty:.2g}"
-    source = fact.fluent.source
-    by = f" by {source.by}" if source.origin in (Origin.SAID, Origin.SHOWN) else ""
-    return f" ({source.origin.value}{by}{sure})"
-
-
-def _time_phrase(found: Recall, lower: float, upper: float) -> str:
-    return f"at {_time(found, lower, upper)}" if lower == upper else _time(found, lower, upper)
-
-
-def _time(found: Recall, lower: float, upper: float) -> str:
-    """Return a time within bounds in words."""
-    first, last = found.moment(lower), found.moment(upper)
-    present = found.moment(found.asked)
-    assert present is not None
-    if first is not None and last is not None:
-        earliest, latest = _clock(first, present), _clock(last, present)
-        return earliest if earliest == latest else f"between {earliest} and {latest}"
-    if last is not None:
-        return f"by {_clock(last, present)}"
-    return "an unknown time" if first is None else f"after {_clock(first, present)}"
-
-
-def _clock(moment: datetime, present: datetime) -> str:
-    """Return a moment as a clock time, with its date where that is not today."""
-    clock = moment.strftime("%H:%M:%S")
-    return clock if moment.date() == present.date() else f"{moment.date().isoformat()} {clock}"

@@ -12,6 +12,7 @@ import pytest
 
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.utterances import Utterance
+from deixis.memory.episodes.predicates import AT
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.tracking.frames.frame import Frame
@@ -19,7 +20,6 @@ from deixis.plots.live_story import write_story
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.moments import key_moments
 from deixis.robot.live.run import SeenThing, live_robot
-from deixis.robot.live.senses import AT
 from deixis.robot.live.story import AtOwnSpeed, StorySettings, simulated_story
 from deixis.session import Session
 
