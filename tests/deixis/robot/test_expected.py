@@ -98,7 +98,7 @@ def test_object_is_merged_with_a_thing_that_fits(robot: Robot) -> None:
     assert known[ball.id, SAME_AS] is known[seen.thing, "isA"] is Origin.INFERRED
     assert known[seen.thing, "at"] is Origin.SEEN
     assert robot.diary.board.now(Pattern(ball.id, EXPECTED)) == ()
-    assert answer(robot, "is there a red ball?", 14.0).startswith("Yes: the ball has been there since")
+    assert answer(robot, "is there a red ball?", 14.0).startswith("Yes: the ball has been left of the fork since")
 
 
 def test_thing_elsewhere_is_not_the_object(robot: Robot) -> None:

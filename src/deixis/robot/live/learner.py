@@ -5,17 +5,19 @@ from __future__ import annotations
 import re
 import threading
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
 from deixis.errors import DeixisError
 from deixis.grammar.activities import announced_thing
+from deixis.grammar.recall.acts import told_act
 from deixis.grammar.recall.questions import is_question
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.predicates import CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
+from deixis.memory.episodes.predicates import ACTS, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
 from deixis.memory.errors import MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
@@ -90,7 +92,10 @@ class Learner(Module):
         self._announced: dict[str, Standing] = {}  # what was said about each expected object
         self._named: LayoutQuestion | None = None  # the question for a name that was asked
         self._unseen: list[EpisodicFluent] = []  # names of things that no scene of the table has yet
-        own = (IS_A, LAYOUT, UNNAMED, NAMELESS, CONSOLIDATED, FAULT, EXPECTED, SAME_AS, CONTRADICTED, SAYS, DONE)
+        own = (
+            *sorted(ACTS), IS_A, LAYOUT, UNNAMED, NAMELESS, CONSOLIDATED, FAULT,
+            EXPECTED, SAME_AS, CONTRADICTED, SAYS, DONE,
+        )  # fmt: skip
         self.writes = tuple(Pattern(predicate=each) for each in (*own, *sorted(described_predicates())))  # type: ignore[misc]
 
     def run(self, board: Board, stopped: threading.Event) -> None:
@@ -262,14 +267,18 @@ class Learner(Module):
             return
         if self._asked is not None and self._settled(text, by, at, board):
             return
+        noted = self._note_act(text, fluent, board)
         try:
             result = self.robot.told(text, by, at, fluent.source.event)
         except MemoryWriteError:
             raise
         except NothingFoundError:
-            self._say(NOT_FOUND, at, board)
+            if not noted:
+                self._say(NOT_FOUND, at, board)
             return
         except DeixisError as error:
+            if noted:
+                return
             seen = self.robot.sees_a_table
             self._say(f"I did not understand: {str(error).splitlines()[0]}" if seen else NOT_SEEN, at, board)
             return
@@ -288,6 +297,25 @@ class Learner(Module):
         if left := [one.name for one in result if one.standing is Standing.EXPECTED]:
             self._say(f"I do not see it yet; I expect: {_listed(left)}.", at, board)
         self._announce(at, board)
+
+    def _note_act(self, text: str, fluent: EpisodicFluent, board: Board) -> bool:
+        """Write who did what with a thing, if a sentence tells it; return False if it does not."""
+        from deixis.workflows.knowledge.recall import told_change
+        from deixis.workflows.knowledge.recall_wording import act_words
+
+        told, by, at = told_act(text), fluent.source.by, fluent.start.lower
+        change = None if told is None else told_change(told, board, at)
+        if told is None or change is None:
+            return False
+        act, thing, when = change
+        person = by if told.person is None else told.person
+        source = Source(Origin.SAID, by, fluent.source.event)
+        finish = replace(when, lower=when.upper + MIN_DURATION, upper=when.upper + MIN_DURATION)
+        id = self._outbox.new_id(board)
+        added = episodic(id, (person, act, thing), start=when, finish=finish, certainty=fluent.certainty, source=source)
+        self._outbox.add(Add(added))
+        self._say(f"I have noted that {person} {act_words(act, told.thing)}.", at, board)
+        return True
 
     def _ask(self, at: float, board: Board) -> None:
         """Ask the most informative question, if it is worth its cost."""

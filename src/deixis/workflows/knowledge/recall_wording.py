@@ -9,7 +9,19 @@ from typing import TYPE_CHECKING
 
 from deixis.answers import count
 from deixis.memory.episodes.fluents.episode import Origin
-from deixis.memory.episodes.predicates import AT, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
+from deixis.memory.episodes.predicates import (
+    ACTS,
+    AT,
+    CONTRADICTED,
+    EXPECTED,
+    IS_A,
+    MOVED,
+    NAMED,
+    PUT,
+    SAID,
+    SAME_AS,
+    TOOK,
+)
 from deixis.ontology.tbox import default_ontology
 
 if TYPE_CHECKING:
@@ -35,8 +47,14 @@ def sentence(found: Recall) -> str:
         sure = max(fact.fluent.certainty for fact in facts)
         statement = "; ".join(distinct(fact_words(found, fact) for fact in facts))
         return f"Probably{'' if sure >= 0.5 else ' not'}: {statement}."
-    if kind in ("whether", "whether_there"):
+    if kind in ("whether", "whether_there", "whether_did_by"):
         return f"Yes: {'; '.join(fact_words(found, fact) for fact in facts)}."
+    if kind == "how_many_did_by":
+        number = len({fact.fluent.statement.object for fact in facts})
+        return f"{number}: {'; '.join(distinct(fact_words(found, fact) for fact in facts))}."
+    if kind == "how_often_by":
+        sentences = distinct(fact_words(found, fact) for fact in facts)
+        return f"{count(len(sentences), 'time')}: {'; '.join(sentences)}."
     if kind in ("how_many", "how_many_did", "how_many_shown"):
         number = len({fact.fluent.statement.subject for fact in facts})
         return f"{number}: {', '.join(sorted(distinct(f'the {fact.name}' for fact in facts)))}."
@@ -48,7 +66,7 @@ def sentence(found: Recall) -> str:
         if kind == "how_often":
             return f"{count(len(sentences), 'time')}: {'; '.join(sentences)}."
         return f"Yes: {'; '.join(sentences)}." if kind == "whether_did" else _capital("; ".join(sentences))
-    if kind in ("shown", "who"):
+    if kind in ("shown", "who", "said_about") and all(fact.fluent.statement.predicate in NAMED for fact in facts):
         sentences = distinct(
             f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "
             f"{fact.name} {_time_phrase(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
@@ -95,10 +113,12 @@ def fact_words(found: Recall, fact: Recalled) -> str:
     """
     statement, fluent = fact.fluent.statement, fact.fluent
     words = (statement.object or "").rstrip(".!")
-    start = "" if math.isinf(fluent.start.lower) else f" from {_time(found, fluent.start.lower, fluent.start.upper)}"
-    finish = "" if fluent.is_open else f" to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-    since = f" since {_time(found, fluent.start.lower, fluent.start.upper)}" if start and fluent.is_open else ""
-    verb = "has been" if since else "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
+    begins, ends = (fluent.start, fluent.finish) if fact.place is None else (fact.place.start, fact.place.finish)
+    is_open = math.isinf(ends.upper)
+    start = "" if math.isinf(begins.lower) else f" from {_time(found, begins.lower, begins.upper)}"
+    finish = "" if is_open else f" to {_time(found, ends.lower, ends.upper)}"
+    since = f" since {_time(found, begins.lower, begins.upper)}" if start and is_open else ""
+    verb = "has been" if since else "is" if is_open or ends.upper > found.asked else "was"
     if statement.predicate == SAID:
         return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
     elif statement.predicate == EXPECTED:
@@ -111,16 +131,48 @@ def fact_words(found: Recall, fact: Recalled) -> str:
         if statement.predicate == CONTRADICTED:
             return f"the {fact.name} was not there {then}: {statement.object}{_source(fact)}"
         return f"the {fact.name} was seen {then}: {statement.object}{_source(fact)}"
+    elif statement.predicate in ACTS:
+        time = _time_phrase(found, fluent.start.lower, fluent.start.upper)
+        return f"{fact.name} {act_words(statement.predicate, fact.other or '')} {time}{_source(fact)}"
     elif statement.predicate == AT:
         text = f"the {fact.name} {verb} there"
+        if fact.place is not None:
+            text = f"the {fact.name} {verb} {_phrase(fact.place.relation)} the {fact.place.other}"
     elif statement.predicate == IS_A:
         text = f"{statement.subject} {verb} a {fact.other}"
     else:
-        relation = default_ontology().relations.get(statement.predicate)
-        words = relation.phrase if relation is not None else statement.predicate.replace("_", " ")
+        words = _phrase(statement.predicate)
         other = "" if fact.other is None else f" the {fact.other}"
         text = f"the {fact.name} {verb} {words}{other}"
     return f"{text}{since or start + finish}{_source(fact)}"
+
+
+def act_words(act: str, thing: str) -> str:
+    """Return what a person did with a thing.
+
+    Parameters
+    ----------
+    act
+        Predicate of the act.
+    thing
+        Name of the thing.
+
+    Returns
+    -------
+    str
+        A predicate such as *moved the fork*.
+    """
+    return {PUT: f"put the {thing} down", MOVED: f"moved the {thing}", TOOK: f"took the {thing} away"}[act]
+
+
+ACT_DONE = {PUT: "put down", MOVED: "moved", TOOK: "taken away"}
+"""Participles of acts."""
+
+
+def _phrase(relation: str) -> str:
+    """Return the words of a relation."""
+    known = default_ontology().relations.get(relation)
+    return known.phrase if known is not None else relation.replace("_", " ")
 
 
 def _source(fact: Recalled) -> str:

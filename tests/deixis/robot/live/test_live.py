@@ -53,6 +53,8 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         assert robot.wait(120.0)
         robot.says("what did the teacher say?")
         robot.says("which one did the teacher show you first")
+        robot.says("Eve moved the plate.")
+        robot.says("who moved the plate?")
         robot.says("t3 is a bowl.")
         robot.says("t3 is a cup.")
         robot.says("t99 is a bowl.")
@@ -80,6 +82,11 @@ def test_robot_learns_what_it_is_told(ran: Ran) -> None:
 def test_robot_finds_the_forgotten_thing(ran: Ran) -> None:
     assert heard(ran, "teacher: What is wrong?")
     assert heard(ran, "robot: This is 'pair'", "the plate is missing")
+
+
+def test_told_acts_are_noted_and_recalled(ran: Ran) -> None:
+    assert heard(ran, "robot: I have noted that Eve moved the plate.")
+    assert heard(ran, "robot: Eve moved the plate", "(said by user)")
 
 
 def test_a_name_that_the_layout_contradicts_is_in_doubt(ran: Ran) -> None:
