@@ -21,12 +21,15 @@ _VERBS = {
     r"steals?|stealing|stole|stolen|carr(?:y|ies|ied|ying)|fetch(?:es|ed|ing)?": ("took",),
     r"touch(?:es|ed|ing)?|handl(?:es?|ed|ing)": ("put", "moved", "took"),
 }  # fmt: skip
-"""What a person does with a thing by the forms of verbs: ``put`` a new thing down, ``moved`` one, ``took`` one away."""
+"""Acts by the forms of the verbs that name them: ``put`` a new thing down, ``moved`` one, ``took`` one away."""
 
 _VERB = f"(?:{'|'.join(_VERBS)})"
 _PARTICLE = "(?:away|off|down|back|up|out|there|here)"
 _WHEN = r"(?=$| (?:since|before|after|until|at|in|between|first|last|when|today|yesterday|this|just|\d))"
-_THING = r"(?:the|an?|my|your|our|his|her|their|this|that|these|those|some|any|all|both|it|them)\b"
+_THING = (
+    r"(?:the|an?|my|your|our|his|her|their|this|that|these|those|some|any|all|both|it|them|"
+    r"(?:any|some|every)thing)\b"
+)
 
 ACT_PATTERN = rf"{_VERB}(?: {_PARTICLE})*\b"
 """Pattern of a verb with its particles, which :func:`reworded` puts beside it."""
@@ -53,7 +56,7 @@ def act_terminals() -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class ToldAct:
-    """What a person is said to have done.
+    """Act that a sentence says a person did.
 
     Attributes
     ----------
@@ -130,6 +133,10 @@ _REWORDED = tuple(
     for pattern, wording in (
         (r"^(?:who (?:was|is) it (?:who|that)|wh(?:ich|at) (?:person|one of (?:us|them))|whose hand)\b", "who"),
         (rf"^who (?:has|have|had|is|was)(?: just| been)* (?={_VERB}\b)", "who "),
+        (rf"^who (?:is|was) responsible for (?={_VERB}\b)", "who "),
+        (rf"^(?:was|is) it ((?:the |my )?[\w'-]+) (?:who|that) (?:has |have )?(?={_VERB}\b)", r"did \1 "),
+        (rf"^when did (?:any|some) ?(?:one|body) (first|last) ({_VERB}) (.+)$", r"who \2 \3 \1"),
+        (rf"^did (?!you\b)[\w ]+? ({_VERB}) (.+) or did [\w ]+$", r"who \1 \2"),
         (r" and (?:by whom|who (?:did it|was it|by))$", " by whom"),
         (rf"^(?:when|where) (?:was|were|has|have) (.+?)( first| last)?(?: been)? ({ACT_PATTERN}) by whom$",
          r"who \3 \1\2"),
@@ -189,7 +196,7 @@ def told_act(text: str) -> ToldAct | None:
     """
     plain = " ".join(re.sub(r"[.!]+$", "", text.strip().lower().replace("\u2019", "'")).split())
     found = _TOLD.fullmatch(plain)
-    if found is None or _PRESENT.match(found["verb"]) or found["person"] in _NO_PERSON:
+    if found is None or _PRESENT.match(found["verb"]) or _NO_PERSON.match(found["person"] or ""):
         return None
     verb = found["verb"] if found["particle"] is None else f"{found['verb']} {found['particle']}"
     person = found["person"] and re.search(rf"\b{re.escape(found['person'])}\b", text, re.IGNORECASE)
@@ -197,8 +204,8 @@ def told_act(text: str) -> ToldAct | None:
     return ToldAct(name, acts_of(verb), found["thing"].strip())
 
 
-_NO_PERSON = frozenset(
-    {"it", "this", "that", "there", "he", "she", "they", "you", "nobody", "noone", "somebody", "someone", "anybody"}
-    | {"anyone", "who", "what", "which", "please", "not", "never", "then", "first", "now", "next", "finally"}
+_NO_PERSON = re.compile(
+    r"(?:it|this|that|there|s?he|they|you|(?:no|some|any) ?(?:one|body)|who|what|which|please|not|never|then|first|now|"
+    r"next|finally)$"
 )
 """First words of sentences that do not name the person who acts."""

@@ -113,14 +113,17 @@ _REWORDED = tuple(
         (r"^where (?:had|has|have) (.+?) been\b", r"where was \1"),
         (r"^where (?:is|are|has|have) (.+?) (?:gone|went)\b(?: to\b)?", r"where did \1 go"),
         (r"^(?:since when|how long) (?:is|are|was|were|has|have) (.+?) (?:been )?where (?:it is|they are)(?: now)?$",
-         r"how long is \1 there"),
+         r"where is \1"),
         (r"^who (?:told|said)(?: (?:you|us|me|anything|something))* about\b", "what did anyone say about"),
         (r"^where did (.+?) used? to be\b", r"where was \1 before"),
         (r"\b(?:has|have) gone\b", "went"),
         (r"\b(?:has|have) come\b", "came"),
         (r"\b(?:has|have) (?=(?:left|disappeared|vanished|arrived|appeared|moved)\b)", ""),
         (r"^what have you been shown\b", "what was shown"),
-        (r"^what (?:was|has been) said about\b|^what have you been told about\b", "what did anyone say about"),
+        (r"^what (?:(?:was|has been) said|(?:have you been|were you) (?:told|taught)) about\b",
+         "what did anyone say about"),
+        (r"^(?:did|have|has) (.+?) (?:ever )?(?:mention(?:ed)?|talk(?:ed)? about|sa(?:y|id) anything about) ",
+         r"what did \1 say about "),
         (r"^what do you (?:know|remember) about\b", "what did anyone say about"),
         (rf"^did {_ANYONE} (?:take|remove|clear)(?: away| off)? (.+?)(?=$| since| before| after| at| in| between)",
          r"was \1 taken away"),
@@ -165,6 +168,12 @@ def _spoken_time(found: re.Match[str]) -> str:
     minutes = 60 * hours + (_PARTS[part] * (1 if side == "past" else -1) if part else 0)
     return f"{minutes // 60}:{minutes % 60:02d}"
 
+
+_PREFACE = (
+    r"^\s*((please|hey|hi|hello|so|now|and|well|ok|okay|excuse me|((can|could|would|will) you (please )?)?tell me|"
+    r"do you (know|remember)|can you remember|i (want|would like|'d like) to know|i wonder)\s+)+"
+)
+"""Words before a question that do not belong to it."""
 
 _ASKS = re.compile(
     r"\s*(?:please |can you |tell me |do you (?:know|remember) )*"
@@ -298,9 +307,9 @@ def _plain(text: str) -> str:
     plain = re.sub(r"\b(have|has) (i|we) told\b", r"did \2 tell", plain)
     plain = re.sub(r"[?!,;\"]|\.(?=\s|$)", " ", plain)
     plain = re.sub(r"\b(a|p)\.m\.?(?=\s|$)", r"\1m", plain)
-    plain = re.sub(r"^\s*((please|(can you )?tell me|do you (know|remember))\s+)+", "", plain)
+    plain = re.sub(_PREFACE, "", plain)
     plain = re.sub(r"\bwhich (?=did\b)|\bwhich (one )?of (them|these|those)\b", "which one ", plain)
-    plain = re.sub(r" please$", "", plain.replace("how many times", "how often"))
+    plain = re.sub(r"\s+please\s*$", "", plain.replace("how many times", "how often"))
     plain = reworded(_SPOKEN.sub(_spoken_time, " ".join(plain.split())))
     for pattern, wording in _REWORDED:
         plain = pattern.sub(wording, plain)

@@ -27,7 +27,7 @@ def test_past_acts_of_persons_are_read(text: str, act: ToldAct) -> None:
         "The fork is left of the plate.",
         "Put the fork on the plate.",
         "Ada puts the fork on the plate.",
-        "Somebody moved the fork.",
+        "Someone moved the fork.",
         "The fork was moved.",
         "Lay the fork left of the plate.",
         "The knife left the table.",

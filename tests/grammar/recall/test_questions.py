@@ -78,6 +78,10 @@ def test_what_is_not_understood_gets_a_wording(text: str) -> None:
         ("when was the cup taken away by the waiter", "when_did_by", "cup", "waiter", ("took",), None),
         ("Has Ada moved the fork?", "whether_did_by", "fork", "ada", ("moved",), None),
         ("What did you move?", "what_did", None, "robot", ("moved",), None),
+        ("Could you tell me who removed the knife, please?", "who_did", "knife", None, ("took",), None),
+        ("Was it Ben who took the knife?", "whether_did_by", "knife", "ben", ("took",), None),
+        ("When did anyone last touch the mug?", "who_did", "mug", None, ("put", "moved", "took"), "last"),
+        ("Did I ever mention the kitchen?", "said_about", "kitchen", None, (), None),
     ],
 )
 def test_questions_about_acts_name_the_person(

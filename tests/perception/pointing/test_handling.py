@@ -1,4 +1,4 @@
-"""Who changed the place of a thing, from the hands of persons."""
+"""Persons who changed the place of a thing, found from their hands."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_a_move_needs_the_hand_at_both_places() -> None:
     assert found.person == "Ada"
 
 
-def test_without_hands_nobody_is_named() -> None:
+def test_without_hands_no_person_is_named() -> None:
     assert HandLog().actor([CONTACT]) is None
     assert log_of(*REACHES, Skeleton(KEPT_SECONDS + 10, {"right_hand": OUTSIDE})).actor([CONTACT]) is None
 

@@ -8,6 +8,7 @@ can be printed as SPARQL.
 from __future__ import annotations
 
 import math
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -78,7 +79,7 @@ MAX_UNATTRIBUTED = 3
 PRONOUNS = frozenset({"it", "them", "that", "this"})
 """Nouns that stand for the thing that the question is about."""
 
-PEOPLE = frozenset({"anyone", "anybody", "someone", "somebody", "people", "person", "persons", "they"})
+PEOPLE = re.compile(r"(?:any|some)(?:one|body)|people|persons?|they")
 """Nouns that stand for any person."""
 
 
@@ -395,7 +396,8 @@ class _Remembering:
         return (first - self.board.origin).total_seconds(), (last - self.board.origin).total_seconds()
 
     def _span_of_event(self, moment: Moment) -> tuple[float, float]:
-        search = self.event_search(EVENTS[moment.kind], self.resolve(moment.value), -math.inf, self.asked, Pick.LAST)
+        things = self._meant if moment.value in PRONOUNS else self.resolve(moment.value)
+        search = self.event_search(EVENTS[moment.kind], things, -math.inf, self.asked, Pick.LAST)
         found = search.run(self.board)
         if not found:
             raise _NotKnownError(f"nothing recorded says that the {moment.value} {_DID[moment.kind]}")
@@ -595,7 +597,7 @@ class _Remembering:
         return FluentSearch(moved, self.places, None, None, None, Edge.STARTS, first - MOMENT, last + MOMENT)
 
     def _unattributed(self, question: RecallQuestion) -> list[tuple[str, EpisodicFluent]]:
-        """Return the changes that a question asks about and of which nobody is known to have made them.
+        """Return the changes that a question asks about and whose actor is unknown.
 
         Each has the predicate of the act that it would be. What lay on the table when it was looked at was not put
         there while the robot looked.
@@ -636,7 +638,7 @@ class _Remembering:
     def _persons(self, question: RecallQuestion) -> frozenset[str] | None:
         wanted = question.speaker or (self.speaker if question.of_asker else None)
         kinds = ("shown", "how_many_shown", "said", "said_about", "where_put", *BY_PERSON, *OF_EXPECTED)
-        if wanted is None or wanted.lower() in PEOPLE or question.kind not in kinds:
+        if wanted is None or PEOPLE.fullmatch(wanted.lower()) or question.kind not in kinds:
             return None
         known = set()
         for each in self.board.holding():
@@ -676,7 +678,7 @@ class _Remembering:
                 if unknown:
                     raise _NotKnownError(self._words_of_unknown(unknown))
         except _NotKnownError as error:
-            reason = str(error)
+            reason = str(error) + self._said_instead(question)
             return Recall(question, (), search, f"Not known: {reason}.", reason, self.asked, self.board.origin)
         made = Recall(question, self._named(found, question), search, "", None, self.asked, self.board.origin)
         if otherwise:
@@ -687,19 +689,37 @@ class _Remembering:
             told = f"{told.removesuffix('.')}; {self._words_of_unknown(unknown)}."
         return replace(made, answer=told)
 
+    def _said_instead(self, question: RecallQuestion) -> str:
+        """Return what persons said about a thing that no name stands for, as the end of a reason."""
+        if question.kind not in BY_PERSON or question.thing is None or question.thing in ANY | SURFACES:
+            return ""
+        if self._is_known(question.thing):
+            return ""
+        search = self._search_of_words(replace(question, kind="said_about", speaker=None, of_asker=False, when=When()))
+        made = Recall(question, self._named(search.run(self.board)), search, "", None, self.asked, self.board.origin)
+        return "".join(f"; {words}" for words in distinct(fact_words(made, fact) for fact in made.facts))
+
     def _named(self, found: Iterable[EpisodicFluent], question: RecallQuestion | None = None) -> tuple[Recalled, ...]:
         """Return fluents with the names that their things had, and with the places that their boxes say."""
+        at = self.asked if question is None else self._time_of_places(question)
         return tuple(
             Recalled(
                 each,
                 self.name(each.statement.subject, each.start.lower),
                 None if each.statement.object is None else self.name(each.statement.object, each.start.lower),
-                self._place_in_words(each, question),
+                self._place_in_words(each, question, at),
             )
             for each in found
         )
 
-    def _place_in_words(self, fluent: EpisodicFluent, question: RecallQuestion | None) -> RelatedPlace | None:
+    def _time_of_places(self, question: RecallQuestion) -> float:
+        """Return the time at which the places that a question asks about are described."""
+        _, end, pick = self.window(question.when, event=False)
+        return -math.inf if pick is Pick.FIRST else end
+
+    def _place_in_words(
+        self, fluent: EpisodicFluent, question: RecallQuestion | None, at: float
+    ) -> RelatedPlace | None:
         """Return where the box of a thing is: as a question asks, else as it is said best."""
         if fluent.statement.predicate != AT:
             return None
@@ -709,7 +729,7 @@ class _Remembering:
         if place is None:
             own = self.name(fluent.statement.subject, fluent.start.lower)
             others = frozenset(thing for thing in self.names if self.name(thing, fluent.start.lower) != own)
-            place = self._boxes(fluent).described(fluent.id, others)
+            place = self._boxes(fluent).described(fluent.id, others, at)
         return None if place is None else replace(place, other=self.name(place.other, place.start.lower))
 
     def _otherwise(
@@ -727,7 +747,7 @@ class _Remembering:
         return time < act.start.lower if order == "first" else time > act.start.upper
 
     def _words_of_unknown(self, unknown: Sequence[tuple[str, EpisodicFluent]]) -> str:
-        """Return which changes nobody is known to have made: *who moved the fork at 11:40:00 was not seen*."""
+        """Return which changes have unknown actors: *who moved the fork at 11:40:00 was not seen*."""
         sentences = []
         for act, change in unknown[:MAX_UNATTRIBUTED]:
             at = clock_time(self._moment(_time_of(act, change)), self._present())

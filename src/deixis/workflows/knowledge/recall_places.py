@@ -22,6 +22,9 @@ from deixis.reasoning.temporal.bounds import Bounds
 MIN_DEGREE = 0.3
 """Minimum degree at which a relation word holds of two boxes; the degrees of directions fall with the distance."""
 
+MIN_DURATION = 1e-3
+"""Time in seconds before the end of a box at which its place is described."""
+
 SUPPORT = ("on", "inside")
 """Relations that say best where a thing is."""
 
@@ -98,7 +101,7 @@ class RecordedBoxes:
         ]
         return max(found, key=lambda each: _duration(each.start, each.finish), default=None)
 
-    def described(self, fluent: str, landmarks: frozenset[str]) -> RelatedPlace | None:
+    def described(self, fluent: str, landmarks: frozenset[str], at: float) -> RelatedPlace | None:
         """Return the relation that says best where a thing in its box is.
 
         Parameters
@@ -107,6 +110,8 @@ class RecordedBoxes:
             Id of the fluent of its box.
         landmarks
             Things with names.
+        at
+            Time in seconds at which the relation must hold; if the thing is not in its box then, the nearest time.
 
         Returns
         -------
@@ -117,10 +122,15 @@ class RecordedBoxes:
         own = self._index(fluent)
         if own is None:
             return None
+        box = self._fluents[own]
+        at = max(min(at, box.finish.upper - MIN_DURATION), box.start.lower)
         best: tuple[float, float, int, str] | None = None
         for other in range(len(self._fluents)):
             if self._may_be_landmark(own, other, landmarks):
-                duration = _duration(*self._both(own, other))
+                start, finish = self._both(own, other)
+                if not start.lower <= at < finish.upper:
+                    continue
+                duration = _duration(start, finish)
                 for word in (*SUPPORT, *DIRECTIONS):
                     degree = float(self._degree(word)[own, other]) * (COARSE if word == "near" else 1.0)
                     lasting = np.inf if word in SUPPORT and degree >= MIN_SUPPORT_DEGREE else duration

@@ -113,7 +113,9 @@ def fact_words(found: Recall, fact: Recalled) -> str:
     """
     statement, fluent = fact.fluent.statement, fact.fluent
     words = (statement.object or "").rstrip(".!")
-    begins, ends = (fluent.start, fluent.finish) if fact.place is None else (fact.place.start, fact.place.finish)
+    begins, ends, place = fluent.start, fluent.finish, fact.place
+    if place is not None and place.relation == found.question.relation:
+        begins, ends = place.start, place.finish
     is_open = math.isinf(ends.upper)
     start = "" if math.isinf(begins.lower) else f" from {_time(found, begins.lower, begins.upper)}"
     finish = "" if is_open else f" to {_time(found, ends.lower, ends.upper)}"
@@ -136,8 +138,11 @@ def fact_words(found: Recall, fact: Recalled) -> str:
         return f"{fact.name} {act_words(statement.predicate, fact.other or '')} {time}{_source(fact)}"
     elif statement.predicate == AT:
         text = f"the {fact.name} {verb} there"
-        if fact.place is not None:
-            text = f"the {fact.name} {verb} {_phrase(fact.place.relation)} the {fact.place.other}"
+        if place is not None:
+            where = f"{_phrase(place.relation)} the {place.other}"
+            if place.start.lower > begins.lower or place.finish.upper < ends.upper:  # the other thing came or went
+                return f"{text}{since or start + finish}, {where}{_source(fact)}"
+            text = f"the {fact.name} {verb} {where}"
     elif statement.predicate == IS_A:
         text = f"{statement.subject} {verb} a {fact.other}"
     else:
