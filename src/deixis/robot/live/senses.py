@@ -284,8 +284,10 @@ class _Writer:
         self.flush()
 
     def hear(self, typed: EpisodicFluent, at_once: bool = False) -> None:
-        """Process typed words as said at the present time of the story."""
+        """Process typed words as said at the present time of the story, or at the present one after its end."""
         self._begin()
+        if self.ended and self._origin is not None:
+            self._at = max(self._at + MIN_DURATION, self._board.seconds() - self._origin)
         utterance = Utterance(
             printed_line(typed.statement.object or "", MAX_CHARACTERS), self._at, speaker=typed.statement.subject
         )

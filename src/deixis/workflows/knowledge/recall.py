@@ -536,6 +536,7 @@ class _Remembering:
         if question.kind == "happened":
             return FluentSearch(None, self.places, None, None, None, Edge.STARTS, start, end, pick)
         if question.kind == "said":
+            end = min(end, self.asked - MOMENT)  # without the question itself
             statement = FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
             sentences = replace(statement, predicates=frozenset({SAID}))
             return sentences if sentences.run(self.board) else statement

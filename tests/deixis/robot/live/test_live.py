@@ -63,7 +63,11 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         write_story(robot, folder / "pictures", lambda *step: steps.append(step))
         moments = len(key_moments(robot.board, robot.began))
         assert steps == [(number, moments + 1) for number in range(moments)]
-        return Ran(folder / "memory", folder / "pictures", lines, robot.things(), moments)
+        things = robot.things()
+        robot.says("forget what Zoe said")
+        robot.says("Please forget everything that I told you.")
+        assert robot.answered(60.0)
+        return Ran(folder / "memory", folder / "pictures", lines, things, moments)
 
 
 def heard(ran: Ran, *words: str) -> bool:
@@ -82,6 +86,16 @@ def test_robot_learns_what_it_is_told(ran: Ran) -> None:
 def test_robot_finds_the_forgotten_thing(ran: Ran) -> None:
     assert heard(ran, "teacher: What is wrong?")
     assert heard(ran, "robot: This is 'pair'", "the plate is missing")
+
+
+def test_what_a_person_taught_is_forgotten_on_request(ran: Ran) -> None:
+    assert heard(ran, "robot: I know nothing that Zoe said or showed.")
+    if heard(ran, "robot: I cannot forget what user said: my modules run as processes"):
+        return
+    assert heard(ran, "robot: I have forgotten what user said and showed:")
+    with Session(ran.memory) as session:
+        assert "teacher" in session.recall("what did the teacher say?").answer
+        assert not session.recall("what did user say?").known
 
 
 def test_told_acts_are_noted_and_recalled(ran: Ran) -> None:
