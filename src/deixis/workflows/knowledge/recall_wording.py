@@ -25,7 +25,7 @@ from deixis.memory.episodes.predicates import (
 from deixis.ontology.tbox import default_ontology
 
 if TYPE_CHECKING:
-    from deixis.workflows.knowledge.recall import Recall, Recalled
+    from deixis.workflows.knowledge.recall_answer import Recall, Recalled
 
 
 def sentence(found: Recall) -> str:

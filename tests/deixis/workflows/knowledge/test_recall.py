@@ -17,7 +17,8 @@ from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.session import Session
-from deixis.workflows.knowledge.recall import Recall, moment_of, recall
+from deixis.workflows.knowledge.recall import moment_of, recall
+from deixis.workflows.knowledge.recall_answer import Recall
 
 NOW = datetime.now().astimezone().replace(hour=12, minute=30, second=0, microsecond=0)
 SEEN, ADA, BOB = (
