@@ -21,10 +21,11 @@ import numpy as np
 from records import command_line, count, recorded, seconds, share
 
 from deixis.examples_data import example
+from deixis.memory.episodes.predicates import AT
 from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.run import LiveRobot, live_robot
-from deixis.robot.live.senses import AT, TABLE, VIEW_ENDING
+from deixis.robot.live.senses import TABLE, VIEW_ENDING
 from deixis.robot.live.story import StorySettings, StoryTruth
 
 NEAR = 0.06

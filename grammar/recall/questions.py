@@ -20,6 +20,7 @@ from lark.exceptions import UnexpectedInput
 
 from deixis.errors import DeixisError
 from deixis.grammar.layout.words import phrase_pattern
+from deixis.grammar.recall.acts import act_terminals, acts_of, reworded
 from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import Ontology, default_ontology
 
@@ -69,6 +70,17 @@ WORDINGS = (
     "what did Ada say?",
     "what did I say in the last 5 minutes?",
     "who showed you the fork?",
+    "who moved the fork?",
+    "who took the cup away first?",
+    "what did Ada put on the plate?",
+    "what did I move?",
+    "when did Ben take the cup away?",
+    "did Ada move the fork?",
+    "what did Ben do?",
+    "where was the fork when Ben took the cup away?",
+    "how many things did Ada move?",
+    "how often did Ada move the fork?",
+    "what did I tell you about the cups?",
     "what happened since noon?",
     "how many things were taken away since noon?",
     "how often was the fork moved?",
@@ -94,22 +106,31 @@ _NUMBERS = {
 _NUMBER_WORDS = "|".join(sorted(_NUMBERS, key=len, reverse=True))
 _COUNTED = re.compile(rf"\b({_NUMBER_WORDS}) (?=(?:second|minute|hour|day|week)s?\b)")
 
-_ANYONE = r"(?:(?:any|some) ?(?:one|body)|i|we|you|people)"
+_ANYONE = r"(?:(?:any|some) ?(?:one|body)|people)"
 _REWORDED = tuple(
     (re.compile(pattern), wording)
     for pattern, wording in (
         (r"^where (?:had|has|have) (.+?) been\b", r"where was \1"),
+        (r"^where (?:is|are|has|have) (.+?) (?:gone|went)\b(?: to\b)?", r"where did \1 go"),
+        (r"^(?:since when|how long) (?:is|are|was|were|has|have) (.+?) (?:been )?where (?:it is|they are)(?: now)?$",
+         r"where is \1"),
+        (r"^who (?:told|said)(?: (?:you|us|me|anything|something))* about\b", "what did anyone say about"),
         (r"^where did (.+?) used? to be\b", r"where was \1 before"),
         (r"\b(?:has|have) gone\b", "went"),
         (r"\b(?:has|have) come\b", "came"),
         (r"\b(?:has|have) (?=(?:left|disappeared|vanished|arrived|appeared|moved)\b)", ""),
         (r"^what have you been shown\b", "what was shown"),
-        (rf"^did {_ANYONE} (?:take|remove|clear) (.+?)(?: away)?(?=$| since| before| after| at| in| between)",
+        (r"^what (?:(?:was|has been) said|(?:have you been|were you) (?:told|taught)) about\b",
+         "what did anyone say about"),
+        (r"^(?:did|have|has) (.+?) (?:ever )?(?:mention(?:ed)?|talk(?:ed)? about|sa(?:y|id) anything about) ",
+         r"what did \1 say about "),
+        (r"^what do you (?:know|remember) about\b", "what did anyone say about"),
+        (rf"^did {_ANYONE} (?:take|remove|clear)(?: away| off)? (.+?)(?=$| since| before| after| at| in| between)",
          r"was \1 taken away"),
         (rf"^what did {_ANYONE} (?:take|clear|remove)(?: away| off)?\b", "what was taken away"),
-        (rf"^did {_ANYONE} move\b (.+?)(?=$| since| before| after| at| in| between)", r"was \1 moved"),
+        (rf"^did {_ANYONE} (?:move|shift|push)\b (.+?)(?=$| since| before| after| at| in| between)", r"was \1 moved"),
         (rf"^what did {_ANYONE} move\b", "what was moved"),
-        (rf"^what did {_ANYONE} (?:put|lay|set) down\b", "what was put down"),
+        (rf"^what did {_ANYONE} (?:(?:put|lay|set) down|bring|add)\b", "what was put down"),
         (r"\b(?:most recently|lastly)\b", "last"),
         (r"^what (?:is|was) the (first|last|latest) (?:thing|object|one) (?:that |which )?"
          r"((?:was |has been )?(?:moved|removed|taken away|put down|placed|added|shown)|came|went|appeared|vanished)\b",
@@ -117,7 +138,6 @@ _REWORDED = tuple(
         (r"\blatest\b", "last"),
         (r"^(what (?:came|appeared)) (after|before) ((?:the|an?) (?:(?!came|went|moved|was|were|left)\w+ ?)+)$",
          r"\1 \2 \3 came"),
-        (r"^what did (?:\w+ ){1,3}?(?:put|lay|place|set|leave) (?!down|away)", "what is "),
         (r"^what (?:do|can) you see\b", "what is there"),
         (r"^(what|which [\w ]+?) (?:did|have) you (?:see|seen)\b(?! yet)", r"\1 came"),
         (r"^(?:did|have) you (?:ever )?(?:see|seen) (.+?)(?=$| since| before| after| at| in| between)", r"did \1 come"),
@@ -127,7 +147,6 @@ _REWORDED = tuple(
         (r"^when (was|were) (.+) there$", r"how long \1 \2 there"),
         (r"^(?:has|did) (?:any|some)thing (?:changed?|happen(?:ed)?)\b(?! to)", "what changed"),
         (r"^what (?:has )?happened (?:to|with) (.+)$", r"how long was \1 there"),
-        (r"\bhow many times\b", "how often"),
     )
 )  # fmt: skip
 """Wordings that ask for the same as others, each a pattern and its replacement."""
@@ -150,6 +169,12 @@ def _spoken_time(found: re.Match[str]) -> str:
     return f"{minutes // 60}:{minutes % 60:02d}"
 
 
+_PREFACE = (
+    r"^\s*((please|hey|hi|hello|so|now|and|well|ok|okay|excuse me|((can|could|would|will) you (please )?)?tell me|"
+    r"do you (know|remember)|can you remember|i (want|would like|'d like) to know|i wonder)\s+)+"
+)
+"""Words before a question that do not belong to it."""
+
 _ASKS = re.compile(
     r"\s*(?:please |can you |tell me |do you (?:know|remember) )*"
     r"(?:where|what|which|who|when|since when|how (?:many|long)|is|are|was|were|did|has|have)\b",
@@ -167,11 +192,14 @@ class Moment:
     """A moment that a question names.
 
     ``kind`` is ``clock`` (``12:30``, ``3 pm``, ``noon``), ``stamp`` (an ISO date or time), ``day`` (``yesterday``),
-    ``ago`` (``value`` seconds), or an event of the thing ``value``: ``gone``, ``come`` or ``moved``.
+    ``ago`` (``value`` seconds), or an event of the thing ``value``: ``gone``, ``come`` or ``moved``. It is ``by`` if a
+    ``person`` (None for the one who asks) did one of ``acts`` with that thing.
     """
 
     kind: str
     value: str
+    person: str | None = None
+    acts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +216,8 @@ class RecallQuestion:
 
     ``kind`` is the alternative of the grammar (``where``, ``related``, ``gone``, …), ``thing`` and ``other`` are nouns
     without articles, ``relation`` is the name of a relation, ``event`` what happened to the thing, ``speaker`` the
-    person named, ``of_asker`` True if the person is the one who asks, and ``order`` ``first`` or ``last``.
+    person named, ``of_asker`` True if the person is the one who asks, and ``order`` ``first`` or ``last``. ``acts`` is
+    what a person did: some of ``put``, ``moved`` and ``took``.
     """
 
     text: str
@@ -201,6 +230,7 @@ class RecallQuestion:
     order: str | None = None
     when: When = When()
     of_asker: bool = False
+    acts: tuple[str, ...] = ()
 
 
 def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion:
@@ -225,6 +255,8 @@ def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion
     """
     if not isinstance(text, str) or not text.strip():
         raise RecallQuestionError(f"a question must be a string; ask, for example: {WORDINGS[1]}")
+    if re.match(r"\s*(?:why|for what reason|what for)\b", text, re.IGNORECASE):
+        return RecallQuestion(text, "why")
     if len(text) > MAX_QUESTION:
         raise RecallQuestionError(f"a question must have at most {MAX_QUESTION} characters, got {len(text)}")
     ontology = ontology or default_ontology()
@@ -275,9 +307,10 @@ def _plain(text: str) -> str:
     plain = re.sub(r"\b(have|has) (i|we) told\b", r"did \2 tell", plain)
     plain = re.sub(r"[?!,;\"]|\.(?=\s|$)", " ", plain)
     plain = re.sub(r"\b(a|p)\.m\.?(?=\s|$)", r"\1m", plain)
-    plain = re.sub(r"^\s*((please|(can you )?tell me|do you (know|remember))\s+)+", "", plain)
+    plain = re.sub(_PREFACE, "", plain)
     plain = re.sub(r"\bwhich (?=did\b)|\bwhich (one )?of (them|these|those)\b", "which one ", plain)
-    plain = _SPOKEN.sub(_spoken_time, " ".join(plain.split()))
+    plain = re.sub(r"\s+please\s*$", "", plain.replace("how many times", "how often"))
+    plain = reworded(_SPOKEN.sub(_spoken_time, " ".join(plain.split())))
     for pattern, wording in _REWORDED:
         plain = pattern.sub(wording, plain)
     plain = re.sub(r"\bstill\b|(?<=\w )here\b", "", plain)
@@ -310,7 +343,9 @@ _OTHERWISE = {"by", "left", "right", "top", "bottom", "holding"}
 def _parser(relations: tuple[str, ...]) -> Lark:
     grammar = (files("deixis.grammar.recall") / "recall.lark").read_text(encoding="utf-8")
     phrases = phrase_pattern(relations).replace("/", r"\/")
-    return Lark(f"{grammar}\nRELATION.4: /{phrases}/\n", parser="lalr", maybe_placeholders=False)
+    terminals = [f"RELATION.4: /(?!in the (?:last|past)\\b){phrases}/"]
+    terminals += [f"{name}.3: /{pattern}/" for name, pattern in act_terminals().items()]
+    return Lark("\n".join((grammar, *terminals, "")), parser="lalr", maybe_placeholders=False)
 
 
 def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
@@ -327,9 +362,12 @@ def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
         kind, words = "shown", " ".join(named).split()
         person = None if of_asker or not words else words.pop()
         asked = [" ".join(words)] if words else []
+    act = next((str(each.children[0]) for each in tree.children if _is(each, "act")), None)
+    if kind in _WITH_AGENT and not of_asker:
+        person = nouns.pop(0)
     order = next((str(each.children[0]) for each in tree.children if _is(each, "order")), None)
     whens = [each for each in tree.children if isinstance(each, Tree) and each.data in _WHENS]
-    if kind in ("related", "present", "gone", "come", "moved", "shown", "how_many", "how_many_did", "how_many_shown"):
+    if kind in _ASKING_FOR_THINGS:
         thing, other = (asked or [None])[0], (nouns or [None])[0]
     else:
         thing, other = (nouns or [None])[0], (nouns[1:] or [None])[0]
@@ -344,6 +382,7 @@ def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
         order=order,
         when=_when(whens[0]) if whens else When(),
         of_asker=of_asker,
+        acts=() if act is None else acts_of(act),
     )
 
 
@@ -362,7 +401,7 @@ _WHENS = {"now", "before", "at_first", "since", "after", "before_time", "at_time
 def _of_verb(verb: str) -> str:
     if verb.startswith(("come", "arrive", "appear")):
         return "come"
-    return "moved" if verb == "move" else "gone"
+    return "gone"
 
 
 _EVENTS: dict[str, Callable[[str], str]] = {
@@ -372,8 +411,21 @@ _EVENTS: dict[str, Callable[[str], str]] = {
     "SHOWN": lambda _: "shown",
     "VERB": _of_verb,
     "WENT": lambda _: "gone",
+    "LEFT": lambda _: "gone",
     "CAME": lambda _: "come",
 }
+
+BY_PERSON = ("who_did", "what_did", "when_did_by", "whether_did_by", "how_many_did_by", "how_often_by")
+"""Kinds of questions about what persons did with things."""
+
+_WITH_AGENT = frozenset(BY_PERSON) - {"who_did"} | {"where_put"}
+"""Kinds of questions whose first noun phrase is the person who acts."""
+
+_ASKING_FOR_THINGS = frozenset(
+    {"related", "present", "gone", "come", "moved", "shown", "how_many", "how_many_did", "how_many_shown"}
+    | {"what_did", "how_many_did_by"}
+)
+"""Kinds of questions for things, whose first noun phrase is a landmark."""
 
 _DONE = ("when_did", "whether_did", "how_many_did", "how_often")
 """Kinds of questions about what happened to things."""
@@ -401,6 +453,10 @@ def _moment(tree: Any) -> Moment:
     kind = str(tree.data)
     if kind == "ago":
         return Moment("ago", _seconds(tree))
+    if kind == "event_by":
+        nouns = [" ".join(each.children[0].children) for each in tree.children if _is(each, "np")]
+        act = next(str(each.children[0]) for each in tree.children if _is(each, "act"))
+        return Moment("by", nouns[-1], nouns[0] if len(nouns) == 2 else None, acts_of(act))
     if kind.startswith("event_"):
         return Moment(kind.removeprefix("event_"), " ".join(tree.children[0].children[0].children))
     return Moment(kind, " ".join(map(str, tree.children)))

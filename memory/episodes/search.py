@@ -6,7 +6,9 @@ same fluents.
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -82,6 +84,10 @@ class FluentSearch:
         after), or moves (another one held before).
     places
         Predicates that say where a thing is, for ``event``.
+    ids
+        Ids of fluents.
+    words
+        Words of which the object, a text that is not a question, has one, in any case.
     """
 
     subjects: frozenset[str] | None = None
@@ -95,6 +101,8 @@ class FluentSearch:
     pick: Pick = Pick.ALL
     event: Event | None = None
     places: frozenset[str] = frozenset()
+    ids: frozenset[str] | None = None
+    words: frozenset[str] | None = None
 
     def run(self, board: Episodes) -> tuple[EpisodicFluent, ...]:
         """Return the fluents that the search finds.
@@ -129,8 +137,17 @@ class FluentSearch:
             and (self.objects is None or statement.object in self.objects)
             and (self.origins is None or source.origin in self.origins)
             and (self.by is None or source.by in self.by)
+            and (self.ids is None or found.id in self.ids)
+            and (self.words is None or self._has_word(statement.object or "?"))
             and self._is_in_window(found)
         )
+
+    def _has_word(self, text: str) -> bool:
+        return not text.endswith("?") and re.search(self._word_pattern(), text, re.IGNORECASE) is not None
+
+    def _word_pattern(self) -> str:
+        """Return a pattern of any of the words, in the notation that Python and SPARQL share."""
+        return rf"(^|[^a-z])({'|'.join(map(re.escape, sorted(self.words or ())))})([^a-z]|$)"
 
     def _is_in_window(self, found: EpisodicFluent) -> bool:
         start, finish = found.start, found.finish
@@ -208,6 +225,8 @@ class FluentSearch:
     def _pattern(self, number: str, between: str = " ") -> str:
         """Return the description of a fluent, whose variables end in a number."""
         parts = []
+        if self.ids is not None:
+            parts.append(f"VALUES ?id{number} {{ {' '.join(map(json.dumps, sorted(self.ids)))} }}")
         if self.subjects is not None:
             parts.append(_values(f"?subject{number}", (thing_iri(name).value for name in sorted(self.subjects))))
         if self.predicates is not None:
@@ -233,6 +252,9 @@ class FluentSearch:
         if self.by is not None:
             names = ", ".join(f"<{resource_iri('agent', name).value}>" for name in sorted(self.by))
             yield f"?by{number} IN ({names})"
+        if self.words is not None:
+            text = f"STR(?object{number})"
+            yield f'!STRENDS({text}, "?") && REGEX({text}, {json.dumps(self._word_pattern())}, "i")'
         first, last = _number(self.start), _number(self.end)
         if self.edge is Edge.HOLDS:
             yield f"?earliestStart{number} <= {last} && ?latestFinish{number} > {first}"

@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from deixis.workflows.knowledge.episodes import Consolidation
     from deixis.workflows.knowledge.habits import Placements, habits
     from deixis.workflows.knowledge.learn import Learned
-    from deixis.workflows.knowledge.recall import Recall
+    from deixis.workflows.knowledge.recall_answer import Recall
     from deixis.workflows.knowledge.unlearn import Unlearned
     from deixis.workflows.layouts.imagine import Imagination, imagine
     from deixis.workflows.layouts.infer import Inference, infer
@@ -177,7 +177,7 @@ _HOMES = {
     "Prediction": "deixis.reasoning.activities.prediction",
     "QueryResult": "deixis.memory.semantic.queries.results",
     "ReadText": "deixis.workflows.layouts.read_english",
-    "Recall": "deixis.workflows.knowledge.recall",
+    "Recall": "deixis.workflows.knowledge.recall_answer",
     "Recognised": "deixis.learning.views.views",
     "RecognisedActivity": "deixis.reasoning.activities.grounding",
     "Reference": "deixis.reasoning.grounding.reference.answer",

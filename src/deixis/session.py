@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.grounding.dialogue import Ask
     from deixis.workflows.knowledge.learn import Learned, Recording
-    from deixis.workflows.knowledge.recall import Recall
+    from deixis.workflows.knowledge.recall_answer import Recall
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 
 

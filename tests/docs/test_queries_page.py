@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from deixis.examples_data import example
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.session import Session
 
 PAGE = Path(__file__).parents[2] / "docs" / "guides" / "queries.md"
@@ -35,3 +37,16 @@ def test_they_have_answers_over_what_was_really_learned(taught: Path) -> None:
     assert (
         sum(number > 0 for number in found.values()) >= 10
     )  # one looks for disagreements, one for sizes, which take three views
+
+
+def test_acts_are_found_with_their_persons(tmp_path: Path) -> None:
+    seen = Source(Origin.SEEN, "tracker")
+    acts = [(("t1", "isA", "fork"), 0.0), (("Ada", "moved", "t1"), 5.0), (("Ben", "took", "t1"), 9.0)]
+    with Blackboard.open(tmp_path, create=True) as board:
+        for number, (act, start) in enumerate(acts):
+            board.add(episodic(f"f{number}", act, start=start, source=seen), by="test")
+    (query,) = [each for each in QUERIES if "prov:wasAssociatedWith" in each]
+    with Session(tmp_path) as session:
+        rows = session.query(query).rows
+    found = [tuple(str(value.value).rpartition("/")[2].rpartition("#")[2] for value in row[:4]) for row in rows]
+    assert found == [("Ada", "moved", "t1", "fork"), ("Ben", "took", "t1", "fork")]

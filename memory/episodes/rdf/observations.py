@@ -18,6 +18,7 @@ from urllib.parse import quote
 import pyoxigraph as ox
 
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.predicates import ACTS, AT, IS_A, SAID
 from deixis.ontology.rdf.triples import category_iri
 from deixis.reasoning.temporal.fluent import Statement
 
@@ -36,13 +37,15 @@ _IDENTIFIER, _CERTAINTY, _ORIGIN = (ox.NamedNode(EP + name) for name in ("identi
 _SUBJECT, _PREDICATE = ox.NamedNode(SOSA + "hasFeatureOfInterest"), ox.NamedNode(SOSA + "observedProperty")
 _THING, _TEXT = ox.NamedNode(SOSA + "hasResult"), ox.NamedNode(SOSA + "hasSimpleResult")
 _BY, _FROM = ox.NamedNode(_PROV + "wasAttributedTo"), ox.NamedNode(_PROV + "wasDerivedFrom")
+_ACT, _ACTIVITY = ox.NamedNode(EP + "Act"), ox.NamedNode(_PROV + "Activity")
+_ACTOR = ox.NamedNode(_PROV + "wasAssociatedWith")
 _ENDS = tuple(ox.NamedNode(EP + name) for name in ("earliestStart", "latestStart", "earliestFinish", "latestFinish"))
 _DOUBLE = ox.NamedNode("http://www.w3.org/2001/XMLSchema#double")
 _ORIGINS = {origin: ox.Literal(origin.value) for origin in Origin}
 _TRUE = ox.Literal(True)
 _NAME = re.compile(r"[\w.:-]+")
 
-TEXTS = {"at", "said"}
+TEXTS = {AT, SAID}
 """Predicates whose objects are texts, not things."""
 
 
@@ -93,7 +96,7 @@ def predicate_iri(name: str) -> ox.NamedNode:
     NamedNode
         The IRI.
     """
-    if name == "isA":
+    if name == IS_A:
         return TYPE
     return ox.NamedNode(_relations().get(name) or EP + quote(name, safe=""))
 
@@ -109,7 +112,7 @@ def _relations() -> dict[str, str]:
 
 @lru_cache(maxsize=10_000)
 def _object(predicate: str, name: str) -> ox.NamedNode | ox.Literal:
-    if predicate == "isA":
+    if predicate == IS_A:
         return ox.NamedNode(category_iri(name))
     if predicate in TEXTS or not _NAME.fullmatch(name):
         return ox.Literal(name)
@@ -167,6 +170,9 @@ def fluent_values(fluent: EpisodicFluent) -> Values:
     for predicate, time in zip(_ENDS, (start.lower, start.upper, finish.lower, finish.upper), strict=True):
         if math.isfinite(time):
             found[predicate] = [_double(time)]
+    if statement.predicate in ACTS:
+        found[TYPE] = [_FLUENT, _OBSERVATION, _ACT, _ACTIVITY]
+        found[_ACTOR] = [resource_iri("agent", statement.subject)]
     if source.event is not None:
         found[_FROM] = [resource_iri("event", source.event)]
     return found

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
+from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.simulator.cameras.camera import Camera
 from deixis.perception.simulator.cameras.depth import DepthSensor, coloured, measured_look
@@ -29,6 +30,13 @@ from deixis.perception.tracking.frames.frame import Frame
 
 MIN_POINTS = 20
 """Minimum number of points at which a thing counts as visible."""
+
+JOINT_NOISE = 0.01
+"""Standard deviation of the measured places of joints, in metres."""
+
+ARM_JOINTS = ("right_shoulder", "right_elbow", "right_wrist", "right_hand_tip")
+ARM = np.array([[0.0, -0.55, 0.3], [0.0, -0.42, 0.1], [0.0, -0.17, 0.05], [0.0, 0.0, 0.0]])
+"""Places of the joints in metres in the frame of the mesh of the hand, whose grip is at the origin."""
 
 Pose = NDArray[np.float64]
 
@@ -314,6 +322,35 @@ class Film:
         for number in range(int(np.floor(self.seconds * rate + 1e-9)) + 1):
             rng = np.random.default_rng([seed, number])
             yield self._frame(number, number / rate, resting, sensor or DepthSensor(), rng, scale)
+
+    def skeletons(self, person: str, rate: float = 30.0, seed: int = 0) -> tuple[Skeleton, ...]:
+        """Return the right arm of the person whose hand is filmed, while it is there.
+
+        Parameters
+        ----------
+        person
+            Name of the person.
+        rate
+            Frames per second.
+        seed
+            Seed of the noise of the joints.
+
+        Returns
+        -------
+        tuple of Skeleton
+            Shoulder, elbow, wrist and fingertip in the frame of the table, with normal noise of ``JOINT_NOISE``.
+        """
+        rng, found = np.random.default_rng([seed, len(self.legs)]), []
+        for number in range(int(np.floor(self.seconds * rate + 1e-9)) + 1):
+            leg = self.hand_leg(number / rate)
+            if leg is not None:
+                pose = leg.arm_pose(number / rate)
+                places = (pose[:3, :3] @ ARM.T).T + pose[:3, 3] + rng.normal(0.0, JOINT_NOISE, ARM.shape)
+                joints = {
+                    name: (float(x), float(y), float(z)) for name, (x, y, z) in zip(ARM_JOINTS, places, strict=True)
+                }
+                found.append(Skeleton(number / rate, joints, person))
+        return tuple(found)
 
     def _frame(
         self,

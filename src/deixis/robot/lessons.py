@@ -14,6 +14,7 @@ import numpy as np
 
 from deixis.answers import count
 from deixis.learning.layouts.tables import TaughtTable
+from deixis.ontology.inflection import is_plural
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding
 
@@ -66,7 +67,8 @@ class Question:
     @property
     def text(self) -> str:
         """The question in words."""
-        return f"Which one is the {self.role.replace('_', ' ')}?"
+        name = self.role.replace("_", " ")
+        return f"Which ones are the {name}?" if is_plural(name) else f"Which one is the {name}?"
 
     @property
     def why(self) -> str:

@@ -25,6 +25,7 @@ from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
 from deixis.memory.episodes.fluents.changes import Change
 from deixis.memory.episodes.fluents.episode import event_of
+from deixis.memory.episodes.predicates import EXPECTED, IS_A
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.journal import Part
 from deixis.memory.owner import Closing
@@ -44,7 +45,6 @@ from deixis.robot.unnamed import MIN_TABLES, MIN_THINGS, LayoutQuestion, Unnamed
 from deixis.session import Session
 from deixis.view_store import category_name, new_category_name
 from deixis.workflows.knowledge.episodes import Consolidation, consolidate, named_layout
-from deixis.workflows.knowledge.recall import EXPECTED, IS_A
 
 if TYPE_CHECKING:
     import numpy as np

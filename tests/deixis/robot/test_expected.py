@@ -16,6 +16,7 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.experiences import finish_recording, start_recording
 from deixis.memory.episodes.fluents.changes import Add, Update
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
+from deixis.memory.episodes.predicates import CONTRADICTED, EXPECTED, SAME_AS
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
@@ -26,7 +27,7 @@ from deixis.robot.places import places_of
 from deixis.robot.robot import Robot, Told
 from deixis.robot.runtime import Runtime
 from deixis.workflows.knowledge.episodes import Memory, memory_lines
-from deixis.workflows.knowledge.recall import CONTRADICTED, EXPECTED, SAME_AS, recall
+from deixis.workflows.knowledge.recall import recall
 from deixis.workflows.knowledge.unlearn import Selection
 from deixis.workflows.layouts.read import read_script
 from deixis.workflows.scenes.perceive import write_scene
@@ -97,7 +98,7 @@ def test_object_is_merged_with_a_thing_that_fits(robot: Robot) -> None:
     assert known[ball.id, SAME_AS] is known[seen.thing, "isA"] is Origin.INFERRED
     assert known[seen.thing, "at"] is Origin.SEEN
     assert robot.diary.board.now(Pattern(ball.id, EXPECTED)) == ()
-    assert answer(robot, "is there a red ball?", 14.0).startswith("Yes: the ball has been there since")
+    assert answer(robot, "is there a red ball?", 14.0).startswith("Yes: the ball has been left of the fork since")
 
 
 def test_thing_elsewhere_is_not_the_object(robot: Robot) -> None:

@@ -57,8 +57,40 @@ def test_questions_are_told_from_statements(text: str, asks: bool) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "   ", "fork?", "where the fork", "why was the fork there?", "what is on?", "\0", "where " * 400]
+    "text", ["", "   ", "fork?", "where the fork", "whence came the fork?", "what is on?", "\0", "where " * 400]
 )
 def test_what_is_not_understood_gets_a_wording(text: str) -> None:
     with pytest.raises(RecallQuestionError, match=r"for example|at most"):
         read_question(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "thing", "person", "acts", "order"),
+    [
+        ("Who's taken my knife?", "who_did", "knife", None, ("took",), None),
+        ("By whom was the fork moved?", "who_did", "fork", None, ("moved",), None),
+        ("Who was the last one to touch the fork?", "who_did", "fork", None, ("put", "moved", "took"), "last"),
+        ("When was the mug last moved, and by whom?", "who_did", "mug", None, ("moved",), "last"),
+        ("Was the fork moved by Ben or by Ada?", "who_did", "fork", None, ("moved",), None),
+        ("What has Ben put down since noon?", "what_did", None, "ben", ("put", "moved"), None),
+        ("what was the last thing Ada moved?", "what_did", None, "ada", ("moved",), "last"),
+        ("What did Ben do?", "what_did", None, "ben", ("put", "moved", "took"), None),
+        ("when was the cup taken away by the waiter", "when_did_by", "cup", "waiter", ("took",), None),
+        ("Has Ada moved the fork?", "whether_did_by", "fork", "ada", ("moved",), None),
+        ("What did you move?", "what_did", None, "robot", ("moved",), None),
+        ("Could you tell me who removed the knife, please?", "who_did", "knife", None, ("took",), None),
+        ("Was it Ben who took the knife?", "whether_did_by", "knife", "ben", ("took",), None),
+        ("When did anyone last touch the mug?", "who_did", "mug", None, ("put", "moved", "took"), "last"),
+        ("Did I ever mention the kitchen?", "said_about", "kitchen", None, (), None),
+    ],
+)
+def test_questions_about_acts_name_the_person(
+    text: str, kind: str, thing: str | None, person: str | None, acts: tuple[str, ...], order: str | None
+) -> None:
+    found = read_question(text)
+    assert (found.kind, found.thing, found.speaker, found.acts, found.order) == (kind, thing, person, acts, order)
+
+
+def test_a_time_can_be_an_act_of_a_person() -> None:
+    (moment,) = read_question("where was the fork before Ben moved it?").when.moments
+    assert (moment.kind, moment.value, moment.person, moment.acts) == ("by", "it", "ben", ("moved",))

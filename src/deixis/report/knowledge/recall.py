@@ -10,7 +10,7 @@ from deixis.report.marks import doubt
 
 if TYPE_CHECKING:
     from deixis.reasoning.temporal.bounds import Bounds
-    from deixis.workflows.knowledge.recall import Recall, Recalled
+    from deixis.workflows.knowledge.recall_answer import Recall, Recalled
 
 
 def recall_lines(found: Recall) -> Iterator[str]:

@@ -5,17 +5,21 @@ from __future__ import annotations
 import re
 import threading
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
+from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.grammar.activities import announced_thing
+from deixis.grammar.recall.acts import told_act
 from deixis.grammar.recall.questions import is_question
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.errors import MemoryWriteError
+from deixis.memory.episodes.predicates import ACTS, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
+from deixis.memory.errors import MemoryBusyError, MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line
@@ -25,11 +29,10 @@ from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
-from deixis.robot.live.senses import ENDED, MIN_DURATION, SAID, TABLE, WATCHED, named
+from deixis.robot.live.senses import ENDED, MIN_DURATION, TABLE, WATCHED, named
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
-from deixis.workflows.knowledge.recall import CALLED, CONTRADICTED, EXPECTED, IS_A, SAME_AS
 from deixis.workflows.scenes.point import MIN_CONFIDENCE
 
 SAYS, DONE = "says", "done"
@@ -61,6 +64,17 @@ NOT_FOUND = "I found none of these things on the table, so I learned nothing."
 NOT_SEEN = "I have not seen a table yet."
 """Answer to what is said about a table before the first one lay still."""
 
+NAMELESS_LAYOUT = "text"
+"""Name of the layouts that are described in sentences without a name for them."""
+
+_FORGET = re.compile(
+    r"\W*(?:please )?(?:forget|unlearn|take back|ignore) (?:what|all(?: that)?|everything(?: that)?) (?P<person>.+?)"
+    r"(?:'ve|'s| has| have)? (?:ever )?(?:said|told|taught|showed|shown|explained)"
+    r"(?: (?:you|to you|me|us|so far|today))*\W*",
+    re.IGNORECASE,
+)
+"""Sentence that takes back what a person taught: *forget what Ada said*."""
+
 MAX_UNSEEN = 20
 """Maximum number of names that wait until their things have been looked at."""
 
@@ -90,7 +104,10 @@ class Learner(Module):
         self._announced: dict[str, Standing] = {}  # what was said about each expected object
         self._named: LayoutQuestion | None = None  # the question for a name that was asked
         self._unseen: list[EpisodicFluent] = []  # names of things that no scene of the table has yet
-        own = (IS_A, LAYOUT, UNNAMED, NAMELESS, CONSOLIDATED, FAULT, EXPECTED, SAME_AS, CONTRADICTED, SAYS, DONE)
+        own = (
+            *sorted(ACTS), IS_A, LAYOUT, UNNAMED, NAMELESS, CONSOLIDATED, FAULT,
+            EXPECTED, SAME_AS, CONTRADICTED, SAYS, DONE,
+        )  # fmt: skip
         self.writes = tuple(Pattern(predicate=each) for each in (*own, *sorted(described_predicates())))  # type: ignore[misc]
 
     def run(self, board: Board, stopped: threading.Event) -> None:
@@ -262,21 +279,28 @@ class Learner(Module):
             return
         if self._asked is not None and self._settled(text, by, at, board):
             return
+        if (forget := _FORGET.fullmatch(text)) is not None:
+            self._forget(forget["person"], by, at, board)
+            return
+        noted = self._note_act(text, fluent, board)
         try:
             result = self.robot.told(text, by, at, fluent.source.event)
         except MemoryWriteError:
             raise
         except NothingFoundError:
-            self._say(NOT_FOUND, at, board)
+            if not noted:
+                self._say(NOT_FOUND, at, board)
             return
         except DeixisError as error:
+            if noted:
+                return
             seen = self.robot.sees_a_table
-            self._say(f"I did not understand: {str(error).splitlines()[0]}" if seen else NOT_SEEN, at, board)
+            self._say(f"I did not understand: {_without_place(error)}." if seen else NOT_SEEN, at, board)
             return
         if isinstance(result, Told):
             taught = _listed(result.taught) or "nothing new"
             waiting = f" I am not sure yet about: {_listed(result.waiting)}." if result.waiting else ""
-            learned = f"I learned how '{result.lesson.layout}' is laid. I know now: {taught}.{waiting}"
+            learned = f"I learned how {_layout_words(result.lesson.layout)} is laid. I know now: {taught}.{waiting}"
             if result.contradiction is not None:
                 learned += f" This contradicts an earlier description: {result.contradiction}."
             self._then(
@@ -288,6 +312,48 @@ class Learner(Module):
         if left := [one.name for one in result if one.standing is Standing.EXPECTED]:
             self._say(f"I do not see it yet; I expect: {_listed(left)}.", at, board)
         self._announce(at, board)
+
+    def _forget(self, person: str, by: str, at: float, board: Board) -> None:
+        """Take back what a person taught, and say what was taken back."""
+        from deixis.workflows.knowledge.unlearn import Selection
+
+        wanted = by if person.lower() in ("i", "we") else re.sub(r"^the ", "", person, flags=re.IGNORECASE)
+        known = {each.source.by for each in board.holding() if each.source.origin in (Origin.SAID, Origin.SHOWN)}
+        teacher = next((each for each in sorted(known) if each.lower() == wanted.lower()), None)
+        if teacher is None:
+            self._say(f"I know nothing that {wanted} said or showed.", at, board)
+            return
+        try:
+            found = self.robot.unlearn(Selection(teacher=teacher))
+        except MemoryBusyError:
+            reason = "my modules run as processes, and another one owns the memory; stop me and use `deixis unlearn`"
+            self._say(f"I cannot forget what {teacher} said: {reason}.", at, board)
+            return
+        taken = f"{count(len(found.lessons), 'lesson')} and {count(len(found.views), 'view')} of things"
+        self._asked = self._named = None
+        self._then(
+            lambda: self._understand(board, at) if self.robot.sees_a_table else None,
+            lambda: self._say(f"I have forgotten what {teacher} said and showed: {taken}.", at, board),
+        )
+
+    def _note_act(self, text: str, fluent: EpisodicFluent, board: Board) -> bool:
+        """Write who did what with a thing, if a sentence tells it; return False if it does not."""
+        from deixis.workflows.knowledge.recall import told_change
+        from deixis.workflows.knowledge.recall_wording import act_words
+
+        told, by, at = told_act(text), fluent.source.by, fluent.start.lower
+        change = None if told is None else told_change(told, board, at)
+        if told is None or change is None:
+            return False
+        act, thing, when = change
+        person = by if told.person is None else told.person
+        source = Source(Origin.SAID, by, fluent.source.event)
+        finish = replace(when, lower=when.upper + MIN_DURATION, upper=when.upper + MIN_DURATION)
+        id = self._outbox.new_id(board)
+        added = episodic(id, (person, act, thing), start=when, finish=finish, certainty=fluent.certainty, source=source)
+        self._outbox.add(Add(added))
+        self._say(f"I have noted that {person} {act_words(act, told.thing)}.", at, board)
+        return True
 
     def _ask(self, at: float, board: Board) -> None:
         """Ask the most informative question, if it is worth its cost."""
@@ -323,7 +389,7 @@ class Learner(Module):
                 found = recall(question, board, at, self.robot.session.ontology, by)
                 return found.answer if found.known else f"I do not know: {found.reason}."
             except DeixisError as error:
-                return f"I did not understand: {str(error).splitlines()[0]}"
+                return f"I did not understand: {_without_place(error)}."
         if not self.robot.sees_a_table:
             return NOT_SEEN
         look = self.robot.look()
@@ -331,8 +397,8 @@ class Learner(Module):
             return "I do not know how this table should be laid."
         faults = look.faults()
         if not faults:
-            return f"Nothing is wrong: this is '{look.layout}'."
-        return f"This is '{look.layout}'; " + "; ".join(map(str, faults)) + "."
+            return f"Nothing is wrong: this is {_layout_words(look.layout)}."
+        return f"This is {_layout_words(look.layout)}; " + "; ".join(map(str, faults)) + "."
 
     def _say(self, text: str, at: float, board: Board) -> None:
         self._add((self.name, SAYS, printed_line(text, MAX_SAID)), at, board, finish=at + MIN_DURATION)
@@ -340,6 +406,16 @@ class Learner(Module):
     def _add(self, statement: tuple[str, str, str], at: float, board: Board, finish: float | None = None) -> None:
         source = Source(Origin.INFERRED, self.name)
         self._outbox.add(Add(episodic(self._outbox.new_id(board), statement, start=at, finish=finish, source=source)))
+
+
+def _without_place(error: DeixisError) -> str:
+    """Return the first line of an error about words that were said, without the place in a file."""
+    return re.sub(r"^<text>(?::\d+)*: ", "", str(error).splitlines()[0]).rstrip(".")
+
+
+def _layout_words(name: str) -> str:
+    """Return the name of a layout in quotation marks; *a table without a name* if no person named it."""
+    return "a table without a name" if name == NAMELESS_LAYOUT else f"'{name}'"
 
 
 def _listed(names: Iterable[str]) -> str:

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.episode import EpisodicFluent
+from deixis.memory.episodes.predicates import AT, CALLED, IS_A, NOT_CALLED, POINTED_AT, SAID
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.learner import SAYS
-from deixis.robot.live.senses import AT, NOTICED, POINTED_AT, SAID, TABLE, VIEW_ENDING
-from deixis.workflows.knowledge.recall import CALLED, IS_A, NOT_CALLED
+from deixis.robot.live.senses import NOTICED, TABLE, VIEW_ENDING
 from deixis.workflows.scenes.point import SAME_MOMENT
 
 SITUATION_DELAY = 0.01

@@ -13,17 +13,17 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.experiences import finish_recording, start_recording
 from deixis.memory.episodes.fluents.changes import Add, Finish, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.predicates import AT, IS_A, SAID
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import MAX_SECONDS, Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.learner import DONE, SAYS
-from deixis.robot.live.senses import AT, BEGAN, DROPPED, ENDED, MIN_DURATION, NOTICED, SAID, TABLE, TYPED
+from deixis.robot.live.senses import BEGAN, DROPPED, ENDED, MIN_DURATION, NOTICED, TABLE, TYPED
 from deixis.robot.live.story import StorySettings
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.runtime import Runtime
 from deixis.scratch import scratch_folder
-from deixis.workflows.knowledge.recall import IS_A
 
 STATES = (AT, TABLE, TYPED, DROPPED, BEGAN, ENDED, DONE)
 """Predicates of the senses' fluents that hold at present; the robot ends its own conclusions."""

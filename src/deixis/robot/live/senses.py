@@ -3,7 +3,8 @@
 Things are tracked from frame to frame. When nothing moves, the table is written as a scene, with the clouds of its
 things, into a folder, so that other modules can look at it. A name that is said while a person points becomes a
 statement about the thing (``t3 called fork``), and so does one that announces what is laid (*first the plate*): it
-names the thing that comes to rest at that time.
+names the thing that comes to rest at that time. If the hand of a person was at a thing whose place changed, the act is
+written too (``Ada moved t3``).
 """
 
 from __future__ import annotations
@@ -30,10 +31,12 @@ from deixis.grammar.activities import announced_thing
 from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.fluents.changes import Add, Change, Delete, Finish, Logged, Update
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.predicates import ACTS, AT, CALLED, MOVED, NOT_CALLED, POINTED_AT, PUT, SAID, TOOK
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.aim import SURE, Pointing, pointed_at
 from deixis.perception.pointing.gesture import Gesture, GestureDetector
+from deixis.perception.pointing.handling import Contact, HandLog
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.tracking.frames.frame import Frame
@@ -46,7 +49,6 @@ from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.story import Event, Story, StorySettings
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
-from deixis.workflows.knowledge.recall import CALLED, NOT_CALLED
 from deixis.workflows.scenes.point import (
     MIN_CONFIDENCE,
     MIN_SIZE_FIT,
@@ -60,11 +62,11 @@ from deixis.workflows.scenes.point import (
     without_correction,
 )
 
-AT, TABLE, WATCHED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
-    "at", "lookedLike", "watched", "pointedAt", "said", "typed", "noticed", "dropped", "began", "ended",
+TABLE, WATCHED, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
+    "lookedLike", "watched", "typed", "noticed", "dropped", "began", "ended",
 )  # fmt: skip
-"""Predicates: the box of a thing, the file of the scene, that the table is in view and does not change, what a person
-pointed at, said and typed, what the robot noticed, the number of late frames, and the ends of the story."""
+"""Predicates: the file of the scene, that the table is in view and does not change, what a person typed, what the robot
+noticed, the number of late frames, and the ends of the story."""
 
 STILL_SECONDS = 0.6
 """Seconds without movement after which the table is written as a scene."""
@@ -80,6 +82,12 @@ MAX_BRINGING_SECONDS = 5.0
 
 MAX_LATE_SECONDS = 15.0
 """Time in seconds after that in which a thing may still be found that came to rest in time but was hidden."""
+
+HANDLING_SECONDS = 1.5
+"""Seconds before a thing comes to rest, or after it was last seen at rest, in which a hand is looked for there."""
+
+LATE_HAND_SECONDS = 0.3
+"""Time in seconds by which the hand may still, or already, be at the thing on the other side of that time."""
 
 BRINGING_SCALE = 0.5
 """Time in seconds by which things that come later, or earlier, than another one are e times less likely the announced
@@ -121,7 +129,21 @@ class Senses(Module):
     reads: ClassVar[tuple[Pattern, ...]] = (Pattern(predicate=TYPED),)
     writes: ClassVar[tuple[Pattern, ...]] = tuple(
         Pattern(predicate=each)
-        for each in (AT, TABLE, WATCHED, CALLED, NOT_CALLED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED)
+        for each in (
+            *sorted(ACTS),
+            AT,
+            TABLE,
+            WATCHED,
+            CALLED,
+            NOT_CALLED,
+            POINTED_AT,
+            SAID,
+            TYPED,
+            NOTICED,
+            DROPPED,
+            BEGAN,
+            ENDED,
+        )
     )
 
     def __init__(self, story: Mapping[str, Any], folder: str) -> None:
@@ -218,6 +240,14 @@ class _Writer:
         self._cloud: PointCloud | None = None  # of the last frame that was used, and its time
         self._seen_at = math.nan
         self._detector = GestureDetector()
+        self._hands = HandLog()
+        self._aims: deque[tuple[Gesture, str]] = deque(maxlen=HELD_GESTURES)  # gestures and their fluents
+        self._grips: deque[tuple[str, Sequence[Contact]]] = deque(maxlen=HELD_GESTURES)  # of things that persons moved
+        self._rested: dict[str, tuple[float, NDArray[np.float64]]] = {}  # when each thing last lay still, and its box
+        self._moving_since: dict[str, float] = {}  # when each thing that moves left its place
+        # the fluent of the place before the present one, and when the thing last lay there, and its box
+        self._before: dict[str, tuple[str, tuple[float, NDArray[np.float64]]]] = {}
+        self._acts: dict[str, list[tuple[str, float]]] = {}  # fluents of what persons did with each thing, and when
         self._watched_at = math.inf  # time of the last skeleton, until its gestures are finished
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
         self._events: dict[Utterance, str] = {}
@@ -254,8 +284,10 @@ class _Writer:
         self.flush()
 
     def hear(self, typed: EpisodicFluent, at_once: bool = False) -> None:
-        """Process typed words as said at the present time of the story."""
+        """Process typed words as said at the present time of the story, or at the present one after its end."""
         self._begin()
+        if self.ended and self._origin is not None:
+            self._at = max(self._at + MIN_DURATION, self._board.seconds() - self._origin)
         utterance = Utterance(
             printed_line(typed.statement.object or "", MAX_CHARACTERS), self._at, speaker=typed.statement.subject
         )
@@ -363,7 +395,12 @@ class _Writer:
         self._name(situation)
         self._undone = None
         seen = Source(Origin.SEEN, "tracker", f"frame {next(self._frames)}")
-        self._outbox.add(*(self._left(thing, thing.seen_at) for thing in situation.went if thing.id in self._places))
+        for thing in situation.went:
+            if thing.id in self._places:
+                self._outbox.add(self._left(thing, thing.seen_at), *self._act_of(thing, TOOK, seen))
+            self._rested.pop(thing.id, None)
+            self._before.pop(thing.id, None)
+            self._moving_since.pop(thing.id, None)
         self._drop_merged(situation)
         self._outbox.add(*self._places_of(situation, seen))
         for note in situation.notes:
@@ -407,9 +444,47 @@ class _Writer:
             if thing.moving or (known is not None and known[1] == thing.since):
                 continue
             if known is not None:
-                changes.append(self._left(thing, thing.since))
+                changes += self._left_for(thing)
             changes.append(self._place(thing, seen))
+            if known is not None or self._came[self._id(thing.id)] > -math.inf:
+                changes += self._act_of(thing, PUT if known is None else MOVED, seen)
+        for thing in situation.things:
+            place = self._places.get(thing.id)
+            if thing.moving:
+                self._moving_since.setdefault(thing.id, situation.at)
+            elif thing.state == "seen" and place is not None and place[1] == thing.since:
+                self._rested[thing.id] = situation.at, thing.box
+                self._moving_since.pop(thing.id, None)
         return changes
+
+    def _act_of(self, thing: TrackedThing, act: str, seen: Source) -> list[Change]:
+        """Return the fluent of who changed the place of a thing; nothing if no person was seen to do it."""
+        contacts = []
+        if act != PUT and thing.id in self._rested:
+            at, box = self._rested[thing.id]
+            contacts.append(Contact(box, at - LATE_HAND_SECONDS, at + HANDLING_SECONDS))
+        if act != TOOK:
+            contacts.append(Contact(thing.box, thing.since - HANDLING_SECONDS, thing.since + LATE_HAND_SECONDS))
+        actor = self._hands.actor(contacts) if contacts else None
+        if actor is None:
+            return []
+        at = thing.seen_at if act == TOOK else thing.since
+        statement = (printed_line(actor.person), act, self._id(thing.id))
+        added = self._add(statement, at, seen, actor.probability, at + MIN_DURATION)
+        self._acts.setdefault(thing.id, []).append((added.fluent.id, at))
+        return [added, *self._no_longer_aims(actor.person, contacts)]
+
+    def _no_longer_aims(self, person: str, contacts: Sequence[Contact]) -> list[Change]:
+        """Return the deletions of gestures in which a person gripped a thing rather than pointed at it."""
+        gripped = [
+            (gesture, fluent)
+            for gesture, fluent in self._aims
+            if gesture.person == person and _overlap(gesture, contacts)
+        ]
+        self._grips.append((person, contacts))
+        for each in gripped:
+            self._aims.remove(each)
+        return [Delete(fluent) for _, fluent in gripped]
 
     def _place(self, thing: TrackedThing, seen: Source) -> Change:
         added = self._add(
@@ -421,6 +496,21 @@ class _Writer:
         self._places[thing.id] = (added.fluent.id, thing.since)
         self._came.setdefault(self._id(thing.id), thing.since if self._written is not None else -math.inf)
         return added
+
+    def _left_for(self, thing: TrackedThing) -> list[Change]:
+        """Return the changes that end the place of a thing that has moved.
+
+        A place that it only passed on its way is deleted, with the act that led there.
+        """
+        fluent, since = self._places[thing.id]
+        if thing.id not in self._before or self._moving_since.get(thing.id, math.inf) >= since + STILL_SECONDS:
+            self._before[thing.id] = fluent, self._rested.get(thing.id, (since, thing.box))
+            return [self._left(thing, thing.since)]
+        del self._places[thing.id]
+        before, self._rested[thing.id] = self._before[thing.id]
+        led = [act for act, at in self._acts.get(thing.id, ()) if at == since]
+        self._acts[thing.id] = [(act, at) for act, at in self._acts.get(thing.id, ()) if at != since]
+        return [Update(before, finish=self._time(thing.since)), Delete(fluent), *map(Delete, led)]
 
     def _left(self, thing: TrackedThing, at: float) -> Change:
         """Return the change that ends the place of a thing."""
@@ -483,7 +573,8 @@ class _Writer:
             if announced := self._announced.pop(self._id(thing.id), None):  # the whole thing was meant
                 self._unmet.append(announced)
                 self._unmet.sort(key=lambda each: each.utterance.at)
-        self._outbox.add(*(Delete(part[0]) for part in parts if part is not None))
+        acts = (act for thing in situation.merged for act, _ in self._acts.pop(thing.id, ()))
+        self._outbox.add(*(Delete(part[0]) for part in parts if part is not None), *map(Delete, acts))
 
     def _write_table(self, scene: Scene, file: Path) -> None:
         """Write the present table as a scene."""
@@ -528,11 +619,15 @@ class _Writer:
             return
         self._watched_at = skeleton.at
         joints = {name: _moved(self._situation.frame, place) for name, place in skeleton.joints.items()}
-        self._point(self._detector.update(replace(skeleton, joints=joints)))
+        seen = replace(skeleton, joints=joints)
+        self._hands.add(seen)
+        self._point(self._detector.update(seen))
 
     def _point(self, gestures: Iterable[Gesture]) -> None:
         for gesture in gestures:
             if not self._things.objects:
+                continue
+            if any(gesture.person == person and _overlap(gesture, contacts) for person, contacts in self._grips):
                 continue
             pointing = pointed_at(gesture, self._things)
             self._pointings.append(pointing)
@@ -542,6 +637,7 @@ class _Writer:
                 probability = pointing.probabilities[pointing.decided]
                 statement = (printed_line(gesture.person), POINTED_AT, pointing.decided)
                 added = self._add(statement, gesture.start, source, probability, gesture.finish)
+                self._aims.append((gesture, added.fluent.id))
                 self._outbox.add(added)
 
     def _wait_for(self, words: _Words) -> None:
@@ -767,6 +863,11 @@ def named(text: str) -> tuple[str | None, SpokenName | None]:
     if known is None:
         return None, spoken_name(text)
     return known[1], spoken_name(f"{'no, ' if corrects else ''}this {plain[known.end() :]}")
+
+
+def _overlap(gesture: Gesture, contacts: Iterable[Contact]) -> bool:
+    """Return whether a gesture was held while a hand may have been at a thing."""
+    return any(gesture.start <= each.finish and gesture.finish >= each.start for each in contacts)
 
 
 def _required(frame: NDArray[np.float64] | None) -> NDArray[np.float64]:

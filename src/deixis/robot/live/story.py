@@ -49,6 +49,9 @@ RATE = 4.0
 CUSTOMER_PAUSE = 5.0
 """Time in seconds between the two customers, in which the robot does not look."""
 
+WAITER = "waiter"
+"""Name of the simulated person who brings a thing while the robot looks."""
+
 SIMULATED = ("simulator", "laying")
 """Simulated stories: a table for two customers, and a table laid by a person with a camera on her head."""
 
@@ -335,7 +338,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = RATE) -> Story:
     """Return a story of one table and two customers.
 
     The table is laid for the first customer. A teacher points at two things and names them, and says how the table is
-    laid. For the second customer it is laid with other things of the same kinds: the last one is brought while the
+    laid. For the second customer it is laid with other things of the same kinds: a waiter brings the last one while the
     robot looks, and one is forgotten. The teacher asks what is wrong.
 
     Parameters
@@ -411,7 +414,10 @@ def simulated_story(script: Script, seed: int = 0, rate: float = RATE) -> Story:
                 yield Frame(frame.cloud, start + frame.at, number)
                 number += 1
 
-    return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in recording.skeletons), truth)
+    later = films[0].seconds + CUSTOMER_PAUSE
+    people = [replace(one, at=one.at + SPEECH_PAUSE) for one in recording.skeletons]
+    people += [replace(one, at=one.at + later) for one in films[1].skeletons(WAITER, seed=seed)]
+    return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in people), truth)
 
 
 def laying_story(script: Script, seed: int = 0, rate: float = RATE, camera: str = "sway") -> Story:
@@ -499,7 +505,7 @@ def _supports_another(thing: LaidThing, things: Iterable[LaidThing]) -> bool:
 
 
 def _as_seen(skeleton: Skeleton, camera: Camera) -> Skeleton:
-    """Return a skeleton in the frame of the camera, after the pause at the beginning of the story."""
+    """Return a skeleton in the frame of the camera."""
     places = camera.to_camera(np.array(list(skeleton.joints.values())))
     joints = {name: tuple(place) for name, place in zip(skeleton.joints, places.tolist(), strict=True)}
-    return Skeleton(skeleton.at + SPEECH_PAUSE, joints, skeleton.person)
+    return replace(skeleton, joints=joints)

@@ -8,37 +8,44 @@ can be printed as SPARQL.
 from __future__ import annotations
 
 import math
+import re
 from collections import defaultdict
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
-from deixis.answers import Answer, count
-from deixis.arguments import checks_arguments
-from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuestionError, When, read_question
+from deixis.answers import count
+from deixis.grammar.recall.acts import ToldAct
+from deixis.grammar.recall.questions import BY_PERSON, Moment, RecallQuestion, RecallQuestionError, When, read_question
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.predicates import (
+    ACTS,
+    AT,
+    CONTRADICTED,
+    EXPECTED,
+    IS_A,
+    MOVED,
+    NAMED,
+    POINTED_AT,
+    PUT,
+    SAID,
+    SAME_AS,
+    TOOK,
+)
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
-from deixis.ontology.inflection import singular
+from deixis.ontology.inflection import plural, singular
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.errors import SettingError
+from deixis.reasoning.temporal.bounds import Bounds
+from deixis.reasoning.temporal.fluent import Pattern
+from deixis.workflows.knowledge.recall_answer import Recall, Recalled
+from deixis.workflows.knowledge.recall_places import RecordedBoxes, RelatedPlace
+from deixis.workflows.knowledge.recall_wording import ACT_DONE, act_words, clock_time, distinct, fact_words, sentence
 
 if TYPE_CHECKING:
     from deixis.memory.episodes.search import Episodes
-
-AT, IS_A, SAID, POINTED_AT = "at", "isA", "said", "pointedAt"
-"""Predicates of situations: the box of a thing, its category, what a person said, and what a person pointed at."""
-
-CALLED, NOT_CALLED = "called", "notCalled"
-"""Predicates of the names that a person gives to a tracked thing, and of those that the person denies."""
-
-NAMED = frozenset({IS_A, CALLED})
-"""Predicates of the statements with which a person shows a thing."""
-
-EXPECTED, SAME_AS, CONTRADICTED = "expected", "sameAs", "contradicted"
-"""Predicates of objects that a person said are there: the words, the thing that it turned out to be, and the reason why
-it is no longer expected."""
 
 MOMENT = 1e-3
 """Seconds between *before* or *after* a moment and the moment itself."""
@@ -60,78 +67,20 @@ OF_EXPECTED = {"unseen": EXPECTED, "contradicted": CONTRADICTED, "confirmed": SA
 
 EVENTS = {"gone": Event.GOES, "come": Event.COMES, "moved": Event.MOVES}
 
+EVENT_OF_ACT = {PUT: Event.COMES, MOVED: Event.MOVES, TOOK: Event.GOES}
+"""Change of the presence of a thing that each act of a person is."""
 
-@dataclass(frozen=True, slots=True)
-class Recalled:
-    """One fluent of an answer, with the names of its things then."""
+MAX_AT_ONCE = 2
+"""Maximum number of things that persons bring or take at the same time; more were found by a new look at the table."""
 
-    fluent: EpisodicFluent
-    name: str
-    other: str | None
+MAX_UNATTRIBUTED = 3
+"""Maximum number of changes by unknown persons that an answer lists."""
 
-    @property
-    def certainly(self) -> bool:
-        """True if both ends are known exactly, or the fluent has not finished and its start is known exactly."""
-        start, finish = self.fluent.start, self.fluent.finish
-        return start.lower == start.upper and (self.fluent.is_open or finish.lower == finish.upper)
+PRONOUNS = frozenset({"it", "them", "that", "this"})
+"""Nouns that stand for the thing that the question is about."""
 
-
-@dataclass(frozen=True, repr=False)
-class Recall(Answer):
-    """Answer to a question about then and now.
-
-    ``facts`` are the fluents that answer it, in order of time. ``known`` is False if nothing recorded answers it, and
-    ``reason`` then says why. ``answer`` is a sentence, ``search`` finds the facts, ``asked`` is the time of asking, and
-    ``origin`` the time from which fluents count seconds.
-
-    Examples
-    --------
-    >>> from deixis.memory.episodes.blackboard import Blackboard
-    >>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
-    >>> board, seen = Blackboard.transient(datetime(2026, 5, 1, 12, tzinfo=UTC)), Source(Origin.SEEN, "tracker")
-    >>> facts = (("t1", "isA", "fork"), ("t2", "isA", "plate"), ("t1", "left", "t2"))
-    >>> for fact in facts:
-    ...     number = board.add(episodic(board.new_id("f"), fact, start=60.0, source=seen), by="tracker")
-    >>> found = recall("where is the fork?", board, 3600.0)
-    >>> found.known, [str(fact.fluent.statement) for fact in found.facts]
-    (True, ['left(t1, t2)'])
-    >>> found.moment(60.0) == datetime(2026, 5, 1, 12, 1, tzinfo=UTC)
-    True
-    >>> board.close()
-    """
-
-    question: RecallQuestion
-    facts: tuple[Recalled, ...]
-    search: FluentSearch | None
-    answer: str
-    reason: str | None
-    asked: float
-    origin: datetime
-
-    @property
-    def known(self) -> bool:
-        """True if something recorded answers the question."""
-        return self.reason is None
-
-    def summary(self) -> str:
-        """Return the answer in a sentence."""
-        return self.answer
-
-    @checks_arguments
-    def moment(self, seconds: float) -> datetime | None:
-        """Return seconds since the origin as local time.
-
-        Parameters
-        ----------
-        seconds
-            Seconds since the origin of the memory.
-
-        Returns
-        -------
-        datetime or None
-            The moment; None for an infinite number, which stands for an unknown time.
-        """
-        return None if math.isinf(seconds) else (self.origin + timedelta(seconds=seconds)).astimezone()
+PEOPLE = re.compile(r"(?:any|some)(?:one|body)|people|persons?|they")
+"""Nouns that stand for any person."""
 
 
 def recall(
@@ -196,6 +145,41 @@ def arrivals(
     return tuple((each, known.name(each.statement.subject)) for each in reversed(found.values()))
 
 
+def told_change(told: ToldAct, board: Episodes, at: float) -> tuple[str, str, Bounds] | None:
+    """Return the change of the blackboard that a person told of.
+
+    Parameters
+    ----------
+    told
+        What a person is said to have done.
+    board
+        The blackboard.
+    at
+        Time at which it was said, in seconds since the origin of the memory.
+
+    Returns
+    -------
+    tuple or None
+        Predicate of the act, the thing, and when it was done: the last such change of the thing, or an unknown time
+        before the words if none was seen. None if no thing, or more than one, may be meant.
+    """
+    known = _Remembering(board, at, default_ontology(), None)
+    try:
+        things = known.resolve(told.thing)
+    except _NotKnownError:
+        return None
+    searches = {act: known.event_search(EVENT_OF_ACT[act], things, -math.inf, at) for act in told.acts}
+    changes = [(_time_of(act, each), act, each) for act, search in searches.items() for each in search.run(board)]
+    last = max((time for time, _, _ in changes), default=None)
+    meant = {(act, each.statement.subject) for time, act, each in changes if time == last}
+    if last is None:
+        meant = {(told.acts[0], thing) for thing in things or ()}
+    if len(meant) != 1:
+        return None
+    ((act, thing),) = meant
+    return act, thing, Bounds(-math.inf, at) if last is None else Bounds(last, last)
+
+
 def moment_of(time: str) -> datetime:
     """Return a time that is written in ISO 8601, in local time where it has no time zone.
 
@@ -233,6 +217,8 @@ class _Remembering:
         self.names: dict[str, list[tuple[float, str]]] = defaultdict(list)
         self.things: set[str] = set()
         self.predicates: set[str] = set()
+        self._meant: frozenset[str] | None = None  # things that the question is about
+        self._known_boxes: dict[str, RecordedBoxes] = {}
         self.said_of: dict[str, set[str]] = defaultdict(set)  # words that were said about each thing
         self.expected: dict[str, str] = {}  # persons by the objects that they said are there
         relations = {relation.name for relation in ontology.relations.values()}
@@ -245,7 +231,7 @@ class _Remembering:
                 self.said_of[statement.object] |= self.said_of[statement.subject]
             elif statement.object is not None and statement.predicate not in (AT, SAID, EXPECTED):
                 self.said_of[statement.subject].add(statement.object)
-            if statement.predicate == IS_A and statement.object is not None:
+            if statement.predicate in NAMED and statement.object is not None and self._is_name(each):
                 self.names[statement.subject].append((each.start.lower, statement.object))
             if statement.predicate in (AT, IS_A) or statement.predicate in relations:
                 self.things.add(statement.subject)
@@ -258,6 +244,10 @@ class _Remembering:
         self.places = frozenset({AT} if AT in self.predicates else self.predicates & relations)
 
     # ---- names
+
+    def _is_name(self, fluent: EpisodicFluent) -> bool:
+        """Return whether a fluent names its thing; a name that a person gave and then corrected does not count."""
+        return fluent.statement.predicate == IS_A or fluent.is_open
 
     def name(self, thing: str, at: float = math.inf) -> str:
         """Return the category that a thing had at a time, in words; else its id."""
@@ -326,16 +316,32 @@ class _Remembering:
             return then, then
         if moment.kind in EVENTS:
             return self._span_of_event(moment)
+        if moment.kind == "by":
+            return self._span_of_act(moment)
         first, last = _local_span(moment, self._present())
         return (first - self.board.origin).total_seconds(), (last - self.board.origin).total_seconds()
 
     def _span_of_event(self, moment: Moment) -> tuple[float, float]:
-        search = self.event_search(EVENTS[moment.kind], self.resolve(moment.value), -math.inf, self.asked, Pick.LAST)
+        things = self._meant if moment.value in PRONOUNS else self.resolve(moment.value)
+        search = self.event_search(EVENTS[moment.kind], things, -math.inf, self.asked, Pick.LAST)
         found = search.run(self.board)
         if not found:
             raise _NotKnownError(f"nothing recorded says that the {moment.value} {_DID[moment.kind]}")
         ends = [each.finish if search.edge is Edge.FINISHES else each.start for each in found]
         return min(end.lower for end in ends), max(end.upper for end in ends)
+
+    def _span_of_act(self, moment: Moment) -> tuple[float, float]:
+        """Return the time at which a person did something with a thing last."""
+        things = self._meant if moment.value in PRONOUNS else self.resolve(moment.value)
+        of_asker = moment.person is None
+        asked = RecallQuestion("", "what_did", speaker=moment.person, of_asker=of_asker, acts=moment.acts)
+        acts = FluentSearch(self._persons(asked), frozenset(moment.acts), things, end=self.asked, pick=Pick.LAST)
+        found = acts.run(self.board)
+        if not found:
+            thing = "it" if moment.value in PRONOUNS else f"the {moment.value}"
+            done, by = ACT_DONE[moment.acts[0]], moment.person or "you"
+            raise _NotKnownError(f"nothing recorded says that {thing} was {done} by {by}")
+        return min(each.start.lower for each in found), max(each.start.upper for each in found)
 
     # ---- searches
 
@@ -349,23 +355,33 @@ class _Remembering:
     def search(self, question: RecallQuestion) -> FluentSearch:
         """Return the search of the fluents that answer a question."""
         kind = question.kind
-        things = None if question.thing is None else self.resolve(question.thing)
+        if kind == "why":
+            raise _NotKnownError("the reasons for which persons do things are not recorded")
+        things = None
+        if question.thing is not None and kind != "said_about":
+            things = self._things_of(question.thing) if kind in BY_PERSON else self.resolve(question.thing)
+        self._meant = things
         if kind in EVENTS or kind in ("when_did", "whether_did", "how_many_did", "how_often"):
             return self._search_of_event(question, things)
         if kind in ("shown", "how_many_shown", "said", "who", "happened"):
             return self._search_of_statements(question, things)
         if kind in OF_EXPECTED:
             return self._search_of_expected(question)
+        if kind in BY_PERSON:
+            return self._search_of_acts(question, things)
+        if kind == "said_about":
+            return self._search_of_words(question)
+        if kind == "where_put":
+            return self._search_where_put(question, things)
         start, end, pick = self.window(question.when, event=False)
         edge = Edge.FINISHES if pick is Pick.LAST else Edge.STARTS if pick is Pick.FIRST else Edge.HOLDS
         if kind in ("when_held", "when_there"):
             start, end, pick, edge = -math.inf, self.asked, Pick.ALL, Edge.HOLDS
         found = FluentSearch(things, self.places, edge=edge, start=start, end=end, pick=pick)
-        if kind in ("where_put", "seen_last"):
-            found = replace(found, edge=Edge.HOLDS if kind == "seen_last" else Edge.STARTS, pick=Pick.LAST)
-            found = replace(found, start=-math.inf, end=self.asked)
+        if kind == "seen_last":
+            found = replace(found, edge=Edge.HOLDS, pick=Pick.LAST, start=-math.inf, end=self.asked)
         if question.relation is None:
-            if kind in ("where", "where_was", "where_put", "seen_last") and self.relations:
+            if kind in ("where", "where_was", "seen_last") and self.relations:
                 by_relation = replace(found, predicates=self.relations)
                 found = by_relation if by_relation.run(self.board) else found
             if kind == "where_was" and not found.run(self.board):  # it has left its place
@@ -380,7 +396,29 @@ class _Remembering:
         related = replace(found, predicates=frozenset({question.relation}))
         if question.other in SURFACES and question.relation == "on" and not self._is_known(question.other):
             return related if related.run(self.board) else found
-        return replace(related, objects=None if question.other is None else self.resolve(question.other))
+        others = None if question.other is None else self.resolve(question.other)
+        stated = replace(related, objects=others)
+        if AT not in self.places or stated.run(self.board):
+            return stated
+        in_boxes = [each for each in found.run(self.board) if self._related_place(each, question.relation, others)]
+        return replace(found, ids=frozenset(each.id for each in in_boxes)) if in_boxes else stated
+
+    # ---- places in boxes
+
+    def _boxes(self, fluent: EpisodicFluent) -> RecordedBoxes:
+        """Return the boxes that hold while that of a fluent does, up to the time of asking."""
+        key = fluent.id
+        if key not in self._known_boxes:
+            end = min(fluent.finish.upper, self.asked)
+            self._known_boxes[key] = RecordedBoxes(self.board.holding(Pattern(predicate=AT), fluent.start.lower, end))
+        return self._known_boxes[key]
+
+    def _related_place(
+        self, fluent: EpisodicFluent, relation: str, others: frozenset[str] | None
+    ) -> RelatedPlace | None:
+        if fluent.statement.predicate != AT:
+            return None
+        return self._boxes(fluent).related(fluent.id, relation, others)
 
     def _search_of_last_places(self, search: FluentSearch) -> FluentSearch:
         """Return the search of where the things of a search were before they left their places."""
@@ -424,22 +462,121 @@ class _Remembering:
         if question.kind == "happened":
             return FluentSearch(None, self.places, None, None, None, Edge.STARTS, start, end, pick)
         if question.kind == "said":
+            end = min(end, self.asked - MOMENT)  # without the question itself
             statement = FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
             sentences = replace(statement, predicates=frozenset({SAID}))
             return sentences if sentences.run(self.board) else statement
         origins = frozenset({Origin.SHOWN, Origin.SAID} if question.kind == "who" else {Origin.SHOWN})
         return FluentSearch(things, NAMED, None, origins, by, Edge.STARTS, start, end, pick)
 
+    def _search_of_words(self, question: RecallQuestion) -> FluentSearch:
+        """Return the search of what was said about things: words that name them, else names that they were given."""
+        start, end, pick = self.window(question.when, event=True)
+        by, noun = self._persons(question), question.thing or ""
+        things = self.resolve(noun) if self._is_known(noun) else frozenset()
+        named = {name for thing in things or () for _, name in self.names[thing] if self._fits(name, singular(noun))}
+        words = {form for name in (singular(noun), *named) for form in (name, plural(name))} | {noun}
+        said = FluentSearch(None, frozenset({SAID}), None, None, by, Edge.STARTS, start, end, pick)
+        said = replace(said, words=frozenset(word.replace("_", " ") for word in words))
+        if said.run(self.board) or not things:
+            return said
+        origins = frozenset({Origin.SHOWN, Origin.SAID})
+        return FluentSearch(things, NAMED, None, origins, by, Edge.STARTS, start, end, pick)
+
+    # ---- acts of persons
+
+    def _search_of_acts(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        """Return the search of what persons did with things."""
+        start, end, pick = self.window(question.when, event=True)
+        acts = FluentSearch(self._persons(question), frozenset(question.acts), things, start=start, end=end)
+        if question.relation is not None:
+            acts = replace(
+                acts, ids=frozenset(each.id for each in acts.run(self.board) if self._led_to(question, each))
+            )
+        return replace(acts, pick=Pick(question.order) if question.order else pick)
+
+    def _led_to(self, question: RecallQuestion, act: EpisodicFluent) -> bool:
+        """Return whether a thing is in the relation that a question names, from an act on."""
+        places = self.event_search(EVENT_OF_ACT[act.statement.predicate], frozenset({act.statement.object or ""}),
+                                   act.start.lower - MOMENT, act.start.upper + MOMENT)  # fmt: skip
+        return any(self._is_as_asked(question, each) for each in places.run(self.board))
+
+    def _is_as_asked(self, question: RecallQuestion, place: EpisodicFluent) -> bool:
+        """Return whether the thing of a place is in the relation that a question names."""
+        if question.relation is None:
+            return True
+        if question.other in SURFACES and not self._is_known(question.other or ""):
+            return True
+        others = None if question.other is None else self.resolve(question.other)
+        if self._related_place(place, question.relation, others) is not None:
+            return True
+        at = place.start.upper
+        things, words = frozenset({place.statement.subject}), frozenset({question.relation})
+        return bool(FluentSearch(things, words, others, start=at, end=at).run(self.board))
+
+    def _search_where_put(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        """Return the search of where things are since a person put them there."""
+        acts = replace(self._search_of_acts(question, things), pick=Pick.LAST).run(self.board)
+        if not acts:
+            raise _NotKnownError(self._reason(question))
+        first, last = min(each.start.lower for each in acts), max(each.start.upper for each in acts)
+        moved = frozenset(each.statement.object for each in acts if each.statement.object is not None)
+        return FluentSearch(moved, self.places, None, None, None, Edge.STARTS, first - MOMENT, last + MOMENT)
+
+    def _unattributed(self, question: RecallQuestion) -> list[tuple[str, EpisodicFluent]]:
+        """Return the changes that a question asks about and whose actor is unknown.
+
+        Each has the predicate of the act that it would be. What lay on the table when it was looked at was not put
+        there while the robot looked.
+        """
+        start, end, pick = self.window(question.when, event=True)
+        pick = Pick(question.order) if question.order else pick
+        things = None if question.thing is None else self._things_of(question.thing)
+        acts = FluentSearch(None, ACTS, things, end=self.asked).run(self.board)
+        found = []
+        for act in question.acts:
+            search = self.event_search(EVENT_OF_ACT[act], None, -math.inf, self.asked)
+            changes = search.run(self.board)
+            times = [_time_of(act, each) for each in changes]
+            first = min((each.start.lower for each in self._all_places()), default=-math.inf)
+            for change, time in zip(changes, times, strict=True):
+                looked = times.count(time) > MAX_AT_ONCE or (act == PUT and time <= first)
+                by_someone = any(
+                    each.statement.predicate == act
+                    and each.statement.object == change.statement.subject
+                    and each.start.lower - MOMENT <= time <= each.start.upper + MOMENT
+                    for each in acts
+                )
+                asked = (things is None or change.statement.subject in things) and start <= time <= end
+                if asked and not looked and not by_someone and (act == TOOK or self._is_as_asked(question, change)):
+                    found.append((act, change))
+        found.sort(key=lambda each: _time_of(*each))
+        if pick is not Pick.ALL:
+            found = found[:1] if pick is Pick.FIRST else found[-1:]
+        return found
+
+    def _all_places(self) -> tuple[EpisodicFluent, ...]:
+        return tuple(each for name in sorted(self.places) for each in self.board.holding(Pattern(predicate=name)))
+
+    def _things_of(self, noun: str) -> frozenset[str] | None:
+        """Return the things that a noun stands for; all things for the table that they are on."""
+        return None if noun in SURFACES and not self._is_known(noun) else self.resolve(noun)
+
     def _persons(self, question: RecallQuestion) -> frozenset[str] | None:
         wanted = question.speaker or (self.speaker if question.of_asker else None)
-        if wanted is None or question.kind not in ("shown", "how_many_shown", "said", *OF_EXPECTED):
+        kinds = ("shown", "how_many_shown", "said", "said_about", "where_put", *BY_PERSON, *OF_EXPECTED)
+        if wanted is None or PEOPLE.fullmatch(wanted.lower()) or question.kind not in kinds:
             return None
-        origins = (Origin.SAID, Origin.SHOWN)
-        known = {each.source.by for each in self.board.holding() if each.source.origin in origins}
+        known = set()
+        for each in self.board.holding():
+            if each.source.origin in (Origin.SAID, Origin.SHOWN):
+                known.add(each.source.by)
+            if each.statement.predicate in ACTS or each.statement.predicate == POINTED_AT:
+                known.add(each.statement.subject)
         called = {wanted.lower(), wanted.lower().removeprefix("the ")}  # 'the teacher' is called 'teacher'
         named = frozenset(name for name in known if name.lower() in called)
         if not named:
-            raise _NotKnownError(f"nothing is recorded that '{wanted}' said or showed")
+            raise _NotKnownError(f"nothing is recorded that '{wanted}' said, showed or did")
         return named
 
     # ---- answers
@@ -459,28 +596,123 @@ class _Remembering:
                 question, words = replace(question, kind="whether_there"), frozenset({EXPECTED})
                 search = replace(search, subjects=unseen, predicates=words, objects=None)
                 found = search.run(self.board)
-            otherwise = self._actual_places(question, search) if not found else ()
+            unknown = self._unattributed(question) if question.kind in BY_PERSON else []
+            otherwise = self._otherwise(question, search, unknown) if not found else ()
             if not found and not otherwise:
                 raise _NotKnownError(self._reason(question))
+            if question.order is not None and found:
+                unknown = [each for each in unknown if self._is_before(question.order, each, found[0])]
+                if unknown:
+                    raise _NotKnownError(self._words_of_unknown(unknown))
         except _NotKnownError as error:
-            reason = str(error)
+            reason = str(error) + self._said_instead(question)
             return Recall(question, (), search, f"Not known: {reason}.", reason, self.asked, self.board.origin)
-        made = Recall(question, self._named(found), search, "", None, self.asked, self.board.origin)
+        made = Recall(question, self._named(found, question), search, "", None, self.asked, self.board.origin)
         if otherwise:
-            sentences = "; ".join(_distinct(_fact(made, fact) for fact in self._named(otherwise)))
+            sentences = "; ".join(distinct(fact_words(made, fact) for fact in self._named(otherwise)))
             return replace(made, answer=f"No: {sentences}.")
-        return replace(made, answer=_sentence(made))
+        told = sentence(made)
+        if unknown and question.kind in ("who_did", "what_did", "how_many_did_by"):
+            told = f"{told.removesuffix('.')}; {self._words_of_unknown(unknown)}."
+        return replace(made, answer=told)
 
-    def _named(self, found: Iterable[EpisodicFluent]) -> tuple[Recalled, ...]:
-        """Return fluents with the names that their things had."""
+    def _said_instead(self, question: RecallQuestion) -> str:
+        """Return what persons said about a thing that no name stands for, as the end of a reason."""
+        if question.kind not in BY_PERSON or question.thing is None or question.thing in ANY | SURFACES:
+            return ""
+        if self._is_known(question.thing):
+            return ""
+        search = self._search_of_words(replace(question, kind="said_about", speaker=None, of_asker=False, when=When()))
+        made = Recall(question, self._named(search.run(self.board)), search, "", None, self.asked, self.board.origin)
+        return "".join(f"; {words}" for words in distinct(fact_words(made, fact) for fact in made.facts))
+
+    def _named(self, found: Iterable[EpisodicFluent], question: RecallQuestion | None = None) -> tuple[Recalled, ...]:
+        """Return fluents with the names that their things had, and with the places that their boxes say."""
+        at = self.asked if question is None else self._time_of_places(question)
         return tuple(
             Recalled(
                 each,
                 self.name(each.statement.subject, each.start.lower),
                 None if each.statement.object is None else self.name(each.statement.object, each.start.lower),
+                self._place_in_words(each, question, at),
             )
             for each in found
         )
+
+    def _time_of_places(self, question: RecallQuestion) -> float:
+        """Return the time at which the places that a question asks about are described."""
+        _, end, pick = self.window(question.when, event=False)
+        return -math.inf if pick is Pick.FIRST else end
+
+    def _place_in_words(
+        self, fluent: EpisodicFluent, question: RecallQuestion | None, at: float
+    ) -> RelatedPlace | None:
+        """Return where the box of a thing is: as a question asks, else as it is said best."""
+        if fluent.statement.predicate != AT:
+            return None
+        place = None
+        if question is not None and question.relation is not None and self._is_known(question.other or ""):
+            place = self._related_place(fluent, question.relation, self.resolve(question.other or ""))
+        if place is None:
+            own = self.name(fluent.statement.subject, fluent.start.lower)
+            others = frozenset(thing for thing in self.names if self.name(thing, fluent.start.lower) != own)
+            place = self._boxes(fluent).described(fluent.id, others, at)
+        return None if place is None else replace(place, other=self.name(place.other, place.start.lower))
+
+    def _otherwise(
+        self, question: RecallQuestion, search: FluentSearch, unknown: Sequence[tuple[str, EpisodicFluent]]
+    ) -> tuple[EpisodicFluent, ...]:
+        """Return what was true instead of what a yes-or-no question asks, if that is recorded."""
+        if question.kind == "whether_did_by":
+            return () if unknown else replace(search, subjects=None).run(self.board)
+        return self._actual_places(question, search)
+
+    @staticmethod
+    def _is_before(order: str, change: tuple[str, EpisodicFluent], act: EpisodicFluent) -> bool:
+        """Return whether a change was before an act, or after it if the last one is asked for."""
+        time = _time_of(*change)
+        return time < act.start.lower if order == "first" else time > act.start.upper
+
+    def _words_of_unknown(self, unknown: Sequence[tuple[str, EpisodicFluent]]) -> str:
+        """Return which changes have unknown actors: *who moved the fork at 11:40:00 was not seen*."""
+        sentences = []
+        for act, change in unknown[:MAX_UNATTRIBUTED]:
+            at = clock_time(self._moment(_time_of(act, change)), self._present())
+            sentences.append(f"who {act_words(act, self.name(change.statement.subject))} at {at} was not seen")
+        if len(unknown) > MAX_UNATTRIBUTED:
+            sentences.append(f"nor who made {count(len(unknown) - MAX_UNATTRIBUTED, 'other such change')}")
+        return "; ".join(sentences)
+
+    def _reason_of_acts(self, question: RecallQuestion) -> str:
+        """Return why it is not known who did something, or what a person did."""
+        unknown = self._unattributed(question)
+        done = "put" if question.relation is not None else ACT_DONE[question.acts[0]]
+        done = done if len(question.acts) < len(ACTS) else "handled"
+        what = "nothing" if question.thing is None else f"the {question.thing}"
+        persons = self._persons(question)
+        by = "" if persons is None else f" by {' or '.join(sorted(persons))}"
+        where = ""
+        if question.relation is not None and question.other is not None:
+            where = f" {self.ontology.relations[question.relation].phrase} the {question.other}"
+        recorded = f"{what} is {'' if question.thing is None else 'not '}recorded as {done}{where}{by}"
+        if unknown:
+            unseen = self._words_of_unknown(unknown)
+            return f"{recorded}; {unseen}" if persons is not None else unseen
+        others = self._search_of_acts(question, None if question.thing is None else self._things_of(question.thing))
+        others = replace(others, subjects=None)
+        if persons is not None and (made := others.run(self.board)):
+            answer = Recall(question, self._named(made), others, "", None, self.asked, self.board.origin)
+            return f"{recorded}; " + "; ".join(distinct(fact_words(answer, fact) for fact in answer.facts))
+        if PUT in question.acts and question.thing is not None and question.relation is None:
+            return f"{recorded}; it was there when the table was first seen" if self._is_first(question) else recorded
+        return recorded
+
+    def _is_first(self, question: RecallQuestion) -> bool:
+        """Return whether the thing of a question was there at the beginning of what is recorded."""
+        things = self._things_of(question.thing or "")
+        times = [each.start.lower for each in self._all_places()]
+        own = [each.start.lower for each in self._all_places() if things is None or each.statement.subject in things]
+        return bool(own) and min(own) <= min(times)
 
     def _actual_places(self, question: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
         """Return where the thing of a yes-or-no question was instead, if that is recorded."""
@@ -491,18 +723,22 @@ class _Remembering:
             return ()
         wrong = replace(search, predicates=frozenset({CONTRADICTED}), edge=Edge.STARTS, objects=None)
         missing = replace(wrong, start=-math.inf, pick=Pick.LAST).run(self.board)
-        elsewhere = replace(search, predicates=self.relations, objects=None).run(self.board)
+        elsewhere = replace(search, predicates=self.relations or self.places, objects=None).run(self.board)
         if question.kind == "whether" and (elsewhere or missing):
             return elsewhere or missing
         return missing or (self._last_places(search) if question.when.kind in ("unstated", "now") else ())
 
     def _reason(self, question: RecallQuestion) -> str:
         """Return why nothing answers a question."""
+        if question.kind in BY_PERSON:
+            return self._reason_of_acts(question)
+        if question.kind == "where_put":
+            return self._reason_of_where_put(question)
         if question.kind in ("where", "where_was") and question.when.kind in ("unstated", "now"):
             gone = self.event_search(Event.GOES, self.resolve(question.thing or ""), -math.inf, self.asked, Pick.LAST)
             found = gone.run(self.board)
             if found:
-                clock = _clock(self._moment(found[-1].finish.upper), self._present())
+                clock = clock_time(self._moment(found[-1].finish.upper), self._present())
                 return f"the {question.thing} has been gone since {clock}"
             return f"no place of the {question.thing} is recorded"
         if question.kind == "where" and question.when.kind == "before":
@@ -510,11 +746,22 @@ class _Remembering:
         what = _UNRECORDED.get(question.kind, "nothing that answers it is recorded")
         return what if question.when.kind in ("unstated", "now") else f"{what} for that time"
 
+    def _reason_of_where_put(self, question: RecallQuestion) -> str:
+        """Return why it is not known where a person put a thing, and where the thing is."""
+        where = self.answer(replace(question, kind="where_was", acts=(), speaker=None, of_asker=False))
+        reason = self._reason_of_acts(question)
+        return f"{reason}; {where.answer[0].lower()}{where.answer[1:-1]}" if where.known else reason
+
     def _present(self) -> datetime:
         return self._moment(self.asked)
 
     def _moment(self, seconds: float) -> datetime:
         return (self.board.origin + timedelta(seconds=seconds)).astimezone()
+
+
+def _time_of(act: str, change: EpisodicFluent) -> float:
+    """Return the time of a change that an act is: the end of a place for things that are taken, else its start."""
+    return change.finish.upper if act == TOOK else change.start.lower
 
 
 _DID = {"gone": "went", "come": "came", "moved": "moved"}
@@ -526,6 +773,7 @@ _UNRECORDED = {
     "shown": "nothing is recorded as shown",
     "how_many_shown": "nothing is recorded as shown",
     "said": "nothing is recorded as said",
+    "said_about": "nothing is recorded that was said about it",
     "who": "no person is recorded as having shown or named it",
     "present": "nothing is recorded as there",
     "unseen": "nothing that was said to be there is still to be seen",
@@ -561,107 +809,3 @@ def _local_span(moment: Moment, present: datetime) -> tuple[datetime, datetime]:
         raise RecallQuestionError(f"'{moment.value}' is not a time; write, say, '12:30', '3 pm' or 'noon'") from error
     then = then if then <= present else then - timedelta(days=1)
     return then, then
-
-
-# ---- sentences
-
-
-def _sentence(found: Recall) -> str:
-    """Return the answer to a question in words."""
-    question, facts = found.question, found.facts
-    kind = question.kind
-    if kind == "whether_there" and all(fact.fluent.statement.predicate == EXPECTED for fact in facts):
-        sure = max(fact.fluent.certainty for fact in facts)
-        statement = "; ".join(_distinct(_fact(found, fact) for fact in facts))
-        return f"Probably{'' if sure >= 0.5 else ' not'}: {statement}."
-    if kind in ("whether", "whether_there"):
-        return f"Yes: {'; '.join(_fact(found, fact) for fact in facts)}."
-    if kind in ("how_many", "how_many_did", "how_many_shown"):
-        number = len({fact.fluent.statement.subject for fact in facts})
-        return f"{number}: {', '.join(sorted(_distinct(f'the {fact.name}' for fact in facts)))}."
-    if kind in ("gone", "come", "moved", "when_did", "whether_did", "how_often"):
-        words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[question.event or kind]
-        edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
-        sentences = _distinct(f"the {fact.name} {words} {_time_phrase(found, end.lower, end.upper)}{_source(fact)}"
-                         for fact, end in zip(facts, edge, strict=True))  # fmt: skip
-        if kind == "how_often":
-            return f"{count(len(sentences), 'time')}: {'; '.join(sentences)}."
-        return f"Yes: {'; '.join(sentences)}." if kind == "whether_did" else _capital("; ".join(sentences))
-    if kind in ("shown", "who"):
-        sentences = _distinct(
-            f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "
-            f"{fact.name} {_time_phrase(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
-            for fact in facts
-        )
-        return _capital("; ".join(sentences))
-    return _capital("; ".join(_distinct(_fact(found, fact) for fact in facts)))
-
-
-def _distinct(parts: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(parts))
-
-
-def _capital(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}" + ("" if text.endswith(("?", "!")) else ".")
-
-
-def _fact(found: Recall, fact: Recalled) -> str:
-    """Return a fluent in words: *the fork was on the plate from 12:00:01 to 12:03:05 (seen)*."""
-    statement, fluent = fact.fluent.statement, fact.fluent
-    words = (statement.object or "").rstrip(".!")
-    start = "" if math.isinf(fluent.start.lower) else f" from {_time(found, fluent.start.lower, fluent.start.upper)}"
-    finish = "" if fluent.is_open else f" to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-    since = f" since {_time(found, fluent.start.lower, fluent.start.upper)}" if start and fluent.is_open else ""
-    verb = "has been" if since else "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
-    if statement.predicate == SAID:
-        return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
-    elif statement.predicate == EXPECTED:
-        sentence = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
-        if not fluent.is_open:
-            return f"{sentence}; expected until {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-        return f"{sentence}; the {fact.name} has not been seen yet, probability {fluent.certainty:.2g}"
-    elif statement.predicate in (CONTRADICTED, SAME_AS):
-        then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
-        if statement.predicate == CONTRADICTED:
-            return f"the {fact.name} was not there {then}: {statement.object}{_source(fact)}"
-        return f"the {fact.name} was seen {then}: {statement.object}{_source(fact)}"
-    elif statement.predicate == AT:
-        text = f"the {fact.name} {verb} there"
-    elif statement.predicate == IS_A:
-        text = f"{statement.subject} {verb} a {fact.other}"
-    else:
-        relation = default_ontology().relations.get(statement.predicate)
-        words = relation.phrase if relation is not None else statement.predicate.replace("_", " ")
-        other = "" if fact.other is None else f" the {fact.other}"
-        text = f"the {fact.name} {verb} {words}{other}"
-    return f"{text}{since or start + finish}{_source(fact)}"
-
-
-def _source(fact: Recalled) -> str:
-    sure = "" if fact.fluent.certainty == 1 else f", certainty {fact.fluent.certainty:.2g}"
-    source = fact.fluent.source
-    by = f" by {source.by}" if source.origin in (Origin.SAID, Origin.SHOWN) else ""
-    return f" ({source.origin.value}{by}{sure})"
-
-
-def _time_phrase(found: Recall, lower: float, upper: float) -> str:
-    return f"at {_time(found, lower, upper)}" if lower == upper else _time(found, lower, upper)
-
-
-def _time(found: Recall, lower: float, upper: float) -> str:
-    """Return a time within bounds in words."""
-    first, last = found.moment(lower), found.moment(upper)
-    present = found.moment(found.asked)
-    assert present is not None
-    if first is not None and last is not None:
-        earliest, latest = _clock(first, present), _clock(last, present)
-        return earliest if earliest == latest else f"between {earliest} and {latest}"
-    if last is not None:
-        return f"by {_clock(last, present)}"
-    return "an unknown time" if first is None else f"after {_clock(first, present)}"
-
-
-def _clock(moment: datetime, present: datetime) -> str:
-    """Return a moment as a clock time, with its date where that is not today."""
-    clock = moment.strftime("%H:%M:%S")
-    return clock if moment.date() == present.date() else f"{moment.date().isoformat()} {clock}"

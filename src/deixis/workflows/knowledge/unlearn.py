@@ -27,6 +27,7 @@ from deixis.memory.episodes.blackboard import open_episodes
 from deixis.memory.episodes.experiences import without_lessons
 from deixis.memory.episodes.fluents.changes import Change, Delete, Update
 from deixis.memory.episodes.fluents.episode import EVENT, EpisodicFluent, Origin, event_of
+from deixis.memory.episodes.predicates import NAMED
 from deixis.memory.journal import Part, write_together
 from deixis.ontology.things.kinds import plain_name
 from deixis.perception.scene import Scene
@@ -45,9 +46,6 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.read import Provenance
     from deixis.ontology.lessons.types import Lesson
 
-
-NAMED = frozenset({"isA", "called"})
-"""Predicates of the category that a person names."""
 
 UNLEARN = "unlearn"
 """Name under which the log of the blackboard records what was taken back."""

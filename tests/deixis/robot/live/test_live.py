@@ -12,6 +12,7 @@ import pytest
 
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.utterances import Utterance
+from deixis.memory.episodes.predicates import AT
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.tracking.frames.frame import Frame
@@ -19,7 +20,6 @@ from deixis.plots.live_story import write_story
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.moments import key_moments
 from deixis.robot.live.run import SeenThing, live_robot
-from deixis.robot.live.senses import AT
 from deixis.robot.live.story import AtOwnSpeed, StorySettings, simulated_story
 from deixis.session import Session
 
@@ -53,6 +53,8 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         assert robot.wait(120.0)
         robot.says("what did the teacher say?")
         robot.says("which one did the teacher show you first")
+        robot.says("Eve moved the plate.")
+        robot.says("who moved the plate?")
         robot.says("t3 is a bowl.")
         robot.says("t3 is a cup.")
         robot.says("t99 is a bowl.")
@@ -61,7 +63,11 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         write_story(robot, folder / "pictures", lambda *step: steps.append(step))
         moments = len(key_moments(robot.board, robot.began))
         assert steps == [(number, moments + 1) for number in range(moments)]
-        return Ran(folder / "memory", folder / "pictures", lines, robot.things(), moments)
+        things = robot.things()
+        robot.says("forget what Zoe said")
+        robot.says("Please forget everything that I told you.")
+        assert robot.answered(60.0)
+        return Ran(folder / "memory", folder / "pictures", lines, things, moments)
 
 
 def heard(ran: Ran, *words: str) -> bool:
@@ -80,6 +86,21 @@ def test_robot_learns_what_it_is_told(ran: Ran) -> None:
 def test_robot_finds_the_forgotten_thing(ran: Ran) -> None:
     assert heard(ran, "teacher: What is wrong?")
     assert heard(ran, "robot: This is 'pair'", "the plate is missing")
+
+
+def test_what_a_person_taught_is_forgotten_on_request(ran: Ran) -> None:
+    assert heard(ran, "robot: I know nothing that Zoe said or showed.")
+    if heard(ran, "robot: I cannot forget what user said: my modules run as processes"):
+        return
+    assert heard(ran, "robot: I have forgotten what user said and showed:")
+    with Session(ran.memory) as session:
+        assert "teacher" in session.recall("what did the teacher say?").answer
+        assert not session.recall("what did user say?").known
+
+
+def test_told_acts_are_noted_and_recalled(ran: Ran) -> None:
+    assert heard(ran, "robot: I have noted that Eve moved the plate.")
+    assert heard(ran, "robot: Eve moved the plate", "(said by user)")
 
 
 def test_a_name_that_the_layout_contradicts_is_in_doubt(ran: Ran) -> None:

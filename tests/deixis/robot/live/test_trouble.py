@@ -17,6 +17,7 @@ from deixis.grammar.utterances import Utterance
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add, Change, Finish
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
+from deixis.memory.episodes.predicates import SAID
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
@@ -28,7 +29,7 @@ from deixis.robot.diary import UNNAMED
 from deixis.robot.live.learner import DONE, NOT_FOUND, NOT_SEEN, SAYS, Learner
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.run import live_robot
-from deixis.robot.live.senses import DROPPED, ENDED, NOTICED, SAID, TABLE, Senses
+from deixis.robot.live.senses import DROPPED, ENDED, NOTICED, TABLE, Senses
 from deixis.robot.live.story import PEOPLE, WORDS, Event, Story, StorySettings
 from deixis.robot.modules import Module, ModuleBoard, run_until_stopped
 from deixis.robot.robot import Robot

@@ -17,7 +17,8 @@ from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.session import Session
-from deixis.workflows.knowledge.recall import Recall, moment_of, recall
+from deixis.workflows.knowledge.recall import moment_of, recall
+from deixis.workflows.knowledge.recall_answer import Recall
 
 NOW = datetime.now().astimezone().replace(hour=12, minute=30, second=0, microsecond=0)
 SEEN, ADA, BOB = (
@@ -84,14 +85,15 @@ NO_SPOON = "Not known: nothing on the blackboard is called 'spoon'; it has: cup,
         ("has the fork been moved since noon?", f"No: the {FORK_NOW}"),
         ("was the cup taken away?", "Yes: the cup went between 12:03:20 and 12:03:30 (seen)."),
         ("which of the things was taken away last?", "The cup went between 12:03:20 and 12:03:30 (seen)."),
-        ("where did I put the fork?", f"The {FORK_NOW}"),
+        ("where did I put the fork?",
+         f"Not known: who moved the dinner fork at 11:40:00 was not seen; the {FORK_NOW[:-1]}."),
         ("when did you last see the cup?", CUP_THEN),
         ("what have I shown you last?", "Bob showed the cup at 11:30:20."),
         ("where is the cup?", "Not known: the cup has been gone since 12:03:30."),
         ("where was the cup before?", CUP_THEN),
         ("where is the spoon?", NO_SPOON),
         ("what did Ada say?", "Ada said at 11:39:50: put the fork on the plate."),
-        ("what did Eve say?", "Not known: nothing is recorded that 'eve' said or showed."),
+        ("what did Eve say?", "Not known: nothing is recorded that 'eve' said, showed or did."),
         ("who showed you the cup?", "Bob showed the cup at 11:30:20."),
         ("was the fork left of the plate 55 minutes ago?", f"Yes: the {FORK_THEN}"),
         ("is the fork left of the plate?", f"No: the {FORK_NOW}"),
@@ -105,7 +107,19 @@ NO_SPOON = "Not known: nothing on the blackboard is called 'spoon'; it has: cup,
         ("how many things did I show you?", "2: the cup, the dinner fork."),
         ("how many things did Bob show you?", "1: the cup."),
         ("what came after the fork?", "The cup came at 11:30:20 (seen)."),
-        ("what did Ada put on the plate?", f"The {FORK_NOW}"),
+        ("what did Ada put on the plate?",
+         "Not known: nothing is recorded as put on the plate by Ada; who moved the dinner fork at 11:40:00 "
+         "was not seen."),
+        ("who moved the fork?", "Not known: who moved the dinner fork at 11:40:00 was not seen."),
+        ("who moved the cup?", "Not known: the cup is not recorded as moved."),
+        ("who took the cup away?", "Not known: who took the cup away at 12:03:30 was not seen."),
+        ("when did Bob take the cup away?",
+         "Not known: the cup is not recorded as taken away by Bob; who took the cup away at 12:03:30 was not seen."),
+        ("did Ada move the fork?",
+         "Not known: the fork is not recorded as moved by Ada; who moved the dinner fork at 11:40:00 was not seen."),
+        ("what did Ada tell you about the forks?", "Ada said at 11:39:50: put the fork on the plate."),
+        ("what did Ada tell you about the cup?", "Not known: nothing is recorded that was said about it."),
+        ("what did Bob tell you about the cup?", "Bob showed the cup at 11:30:20."),
         ("did you see a cup?", "Yes: the cup came at 11:30:20 (seen)."),
         ("what did you see last?", "The cup came at 11:30:20 (seen)."),
         ("when did you first see the cup?", "The cup came at 11:30:20 (seen)."),

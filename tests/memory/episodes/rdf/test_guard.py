@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add
-from deixis.memory.episodes.fluents.episode import EpisodicFluent, episodic
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.rdf.guard import SHIPPED, shipped_guard
 from deixis.memory.episodes.rdf.observations import fluent_triples, statement_triple
 from deixis.memory.errors import RejectedWriteError, ShapesError
@@ -21,16 +21,20 @@ WRONG = [
     episodic("w1", ("t1", "at"), start=0.0, source=SEEN),
     episodic("w2", ("t1", "isA"), start=0.0, source=SEEN),
     episodic("w3", ("anna", "said"), start=0.0, source=SEEN),
+    episodic("w4", ("anna", "moved", "t1"), start=0.0, source=Source(Origin.INFERRED, "learner")),
+    episodic("w5", ("anna", "took", "the big cup, I think"), start=0.0, source=SEEN),
 ]
 RIGHT = [
     episodic("r1", ("t1", "at", "[0, 0, 0, 1, 1, 1]"), start=0.0, source=SEEN),
     episodic("r2", ("t1", "isA", "fish knife"), start=0.0, certainty=1e-7, source=SEEN),
+    episodic("r4", ("anna", "put", "t1"), start=0.0, certainty=0.9, source=SEEN),
+    episodic("r5", ("anna", "moved", "t1"), start=None, finish=9.0, source=Source(Origin.SAID, "ben", "s1")),
     episodic("r3", ("t1", "gone"), start=-4e9, finish=4e9, source=SEEN),
 ]
 
 
 @settings(max_examples=4, deadline=None)
-@given(some_fluents(2), st.sets(st.integers(0, 2)))
+@given(some_fluents(2), st.sets(st.integers(0, 4)))
 def test_compiled_checks_agree_with_pyshacl(fluents: list[EpisodicFluent], wrong: set[int]) -> None:
     for fluent in (*fluents, *(WRONG[number] for number in wrong)):
         found = violations([*fluent_triples(fluent), statement_triple(fluent.statement)], file=SHIPPED)
@@ -49,8 +53,22 @@ def test_refused_write_changes_nothing_and_names_the_shape(fluent: EpisodicFluen
             board.write(Add(on("f1")), Add(fluent), by="test")
         assert (board.sequence, board.now()) == (0, ())
     (result,) = refused.value.results
-    assert result.shape in ("box of a thing", "category of a thing", "words that were said")
+    assert result.shape in (
+        "box of a thing",
+        "category of a thing",
+        "words that were said",
+        "origin of an act",
+        "thing of an act",
+    )
     assert str(refused.value).startswith("nothing was written")
+
+
+def test_an_act_is_associated_with_its_person() -> None:
+    act = episodic("f1", ("anna", "moved", "t1"), start=0.0, source=SEEN)
+    triples = {(each.predicate.value, getattr(each.object, "value", "")) for each in fluent_triples(act)}
+    agent = "https://w3id.org/deixis/episodes/agent/anna"
+    assert ("http://www.w3.org/ns/prov#wasAssociatedWith", agent) in triples
+    assert sum(predicate.endswith("wasAttributedTo") for predicate, _ in triples) == 1
 
 
 def test_own_shapes_guard_later_writes(tmp_path: Path) -> None:
