@@ -116,7 +116,8 @@ def joined_choices(stated: Sequence[StatedFact]) -> Iterator[StatedFact]:
     ------
     StatedFact
         Each fact of the text. A choice is joined if all of its options are facts about the same pair, in the same
-        reading, and all are denied or none is; its weight is the sum of theirs, at most 1.
+        reading, and all are denied or none is; its weight is the sum of theirs, at most 1. The options of another
+        choice have a weight of at least one half: that one of several holds does not deny any of them.
 
     Examples
     --------
@@ -134,7 +135,8 @@ def joined_choices(stated: Sequence[StatedFact]) -> Iterator[StatedFact]:
         contents = [option.content for option in options if isinstance(option.content, Fact)]
         pairs = {(c.subject, c.object, c.positive, c.relations[0].reading is WordReading.EXACT) for c in contents}
         if len(options) < 2 or len(contents) < len(options) or len(pairs) > 1:
-            yield fact
+            weight = max(fact.content.weight, 0.5) if options else fact.content.weight
+            yield replace(fact, content=replace(fact.content, weight=weight))
         elif fact is options[0]:
             relations = tuple(dict.fromkeys(relation for c in contents for relation in c.relations))
             weight = min(1.0, round(sum(c.weight for c in contents), 6))

@@ -4,7 +4,8 @@ Most facts come from clauses that the grammar takes whole, whose phrases name th
 the reader had to choose without support in the words: a clause that begins without a joint after another one, a
 predicate without a subject, the thing that a direction is from, a comma that can join something else, a bare word that
 can be a verb as well. The confidence of a fact is the share of right facts without guesses, multiplied by a factor for
-each guess. Facts below :data:`MIN_CONFIDENCE` are not asserted.
+each guess. Facts below :data:`MIN_CONFIDENCE` are not asserted, and those below :data:`MIN_STATED` are left out: the
+message about their words suggests a sentence that states them.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ RIGHT_WITHOUT_GUESSES = 0.87
 """Share of right facts among those without a guess, in texts for which the reader was not changed."""
 MIN_CONFIDENCE = 0.75
 """Smallest confidence of a fact that is asserted."""
+MIN_STATED = 0.5
+"""Smallest confidence of a fact that is listed at all; below it, the fact is more probably wrong than right."""
 
 
 class Guess(StrEnum):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from deixis.deadline import Deadline
-from deixis.grammar.english.confidence import Guess, confidence, is_doubtful
+from deixis.grammar.english.confidence import MIN_STATED, Guess, confidence, is_doubtful
 from deixis.grammar.english.discourse.discourse import Discourse
 from deixis.grammar.english.discourse.drafts import Draft as FactDraft
 from deixis.grammar.english.discourse.entities import Entity, Role, names_of
@@ -72,9 +72,10 @@ def read_english(
     discourse = Discourse(text, sentences, dict(ontology.hedges), known_nouns(ontology.kinds))
     drafts = discourse.read()
     writer = _Writer(text, file, ontology, discourse)
-    stated = tuple(fact for draft in drafts for fact in writer.facts(draft))
+    read = [fact for draft in drafts for fact in writer.facts(draft)]
+    stated = tuple(fact for fact in read if fact.confidence >= MIN_STATED)
     by_sentence: dict[int, list[StatedFact]] = {}
-    for fact in stated:
+    for fact in read:
         by_sentence.setdefault(fact.sentence, []).append(fact)
     reading = Reading(
         text=text,
@@ -111,14 +112,15 @@ class _Writer:
     def __init__(self, text: str, file: str, ontology: Ontology, discourse: Discourse) -> None:
         self.text, self.file, self.ontology, self.discourse = text, file, ontology, discourse
         self.starts = [0, *(i + 1 for i, c in enumerate(text) if c == "\n")]
-        used = [e for d in discourse.drafts for e in (*d.subjects, *d.arguments)]
         order: dict[Entity, None] = {}
-        for entity in [*discourse.references.entities, *used]:
+        for entity in [*discourse.references.entities, *_entities(discourse.drafts)]:
             for leaf in entity.leaves():
                 order[leaf] = None
-        told = {leaf for entity in used for leaf in entity.leaves()}
-        shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in told]
-        self.names = names_of(shown)
+        kept = [draft for draft in discourse.drafts if confidence(draft.how.guesses) >= MIN_STATED]
+        told, said = ({leaf for e in _entities(drafts) for leaf in e.leaves()} for drafts in (kept, discourse.drafts))
+        shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in said]
+        self.names = names_of([e for e in shown if e in told])
+        self.names_in_hints = {**names_of(shown), **self.names}
         self.declared: set[tuple[str, str]] = set()  # names with a declared kind or colour, and which of the two
 
     def source(self, span: tuple[int, int]) -> Source:
@@ -139,13 +141,13 @@ class _Writer:
 
     def facts(self, draft: FactDraft) -> Iterator[StatedFact]:
         """Yield the facts of a draft: one for each object, or for each pair of members."""
-        subjects = [leaf for s in draft.subjects for leaf in s.leaves() if leaf in self.names]
-        arguments = [leaf for a in draft.arguments for leaf in a.leaves() if leaf in self.names]
+        subjects = [leaf for s in draft.subjects for leaf in s.leaves() if leaf in self.names_in_hints]
+        arguments = [leaf for a in draft.arguments for leaf in a.leaves() if leaf in self.names_in_hints]
         if not subjects or (draft.arguments and not arguments):
             return
         how = draft.how
-        names = [self.names[leaf] for leaf in subjects]
-        ends = [self.names[leaf] for leaf in arguments]
+        names = [self.names_in_hints[leaf] for leaf in subjects]
+        ends = [self.names_in_hints[leaf] for leaf in arguments]
         contents: list[Fact | Claim] = []
         if draft.collective or draft.relation.startswith("none_"):
             contents.append(self._claim(draft, tuple(names), tuple(ends)))
@@ -206,7 +208,10 @@ class _Writer:
         return ReadSentence(
             text=" ".join(sentence.text.split()),
             span=sentence.span,
-            paraphrase=paraphrase(facts, surface.noun if surface is not None else "table"),
+            paraphrase=paraphrase(
+                [fact for fact in facts if fact.confidence >= MIN_STATED],
+                surface.noun if surface is not None else "table",
+            ),
             understood=sentence.understood,
             words=sentence.words,
             question=question,
@@ -274,6 +279,10 @@ class _Writer:
             marks += [stated.condition] if stated.condition else []
             note = f"{content}" + (f"  ({', '.join(marks)})" if marks else "")
             yield Comment(note, Source(source.file, source.line, source.column, source.line, source.column), True)
+
+
+def _entities(drafts: list[FactDraft]) -> list[Entity]:
+    return [entity for draft in drafts for entity in (*draft.subjects, *draft.arguments)]
 
 
 def _says_a_place(clause: Clause) -> bool:

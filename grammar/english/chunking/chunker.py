@@ -6,14 +6,17 @@ of ``english.lark``.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from deixis.grammar.english.chunking.chunk import FINITE, Chunk, VerbGroup
 from deixis.grammar.english.chunking.fixed_phrases import FixedPhraseChunker
 from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import PARTICLES
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
-from deixis.grammar.english.vocabulary.adjectives import adjectives, is_material_noun
+from deixis.grammar.english.vocabulary.adjectives import QUALITIES, adjectives, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, NEGATIONS
+from deixis.grammar.english.vocabulary.nouns import FIGURES, last_word
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -62,6 +65,8 @@ class Chunker(FixedPhraseChunker):
             return Chunk(fixed, at, at + 1)
         if self.norms[at : at + 1] and (end := self._denial(at)) is not None:
             return Chunk("ADVERB", at, end, "never")
+        if norm in ("most", "more") and self.norms[at + 1].endswith("ly") and self.nouns.is_determiner(at + 2):
+            return Chunk("ADVERB", at, at + 2, self.norms[at + 1])  # 'most traditionally the napkin lies on it'
         if (verb := self._causative(at)) is not None:
             self._made = verb
             return Chunk("ADVERB", at, at + 1, norm)
@@ -180,6 +185,10 @@ class Chunker(FixedPhraseChunker):
             )
         ):
             return Chunk("ADJP", at, end, phrase.adjectives)  # 'the block second from the left'
+        follows = self._previous() in ("BE", "COMMA", "AND", "OR", "NP", "ADVERB", "ADJP")
+        if end == at + 1 and phrase is not None and self.norms[at] in QUALITIES and follows:
+            span = self.words[at].start, self.words[at].end
+            return Chunk("ADJP", at, end, (Adjective(self.norms[at], "other", Degree.PLAIN, span),))
         if end == at + 1 and phrase is not None and self._previous() == "BE" and (words := self.nouns.predicative(at)):
             return Chunk("ADJP", at, end, words)
         if phrase is None and self._is_material_here(at, end):
@@ -190,6 +199,9 @@ class Chunker(FixedPhraseChunker):
                 span = self.words[at].start, self.words[end - 1].end
                 return Chunk("NP", at, end, NounPhrase(span, adjectives=adjectives))
             return Chunk("ADJP", at, end, adjectives)
+        if last_word(phrase.head) in FIGURES and end < len(self.words) and self.nouns.is_name(end):
+            span = self.words[at].start, self.words[end].end  # 'the doll Anna'
+            return Chunk("NP", at, end + 1, replace(phrase, span=span, head=self.norms[end]))
         return Chunk("NP", at, end, phrase)
 
 

@@ -225,8 +225,11 @@ class FixedPhraseChunker(JointChunker):
                 return Chunk("PUT", at, at + 3, VerbGroup(form.lemma, "posture", "base"))  # 'begin by placing the cup'
         if previous_joint and (advice := self._advice(at)) is not None:
             return advice
+        verb = self.chunks[-1].value if self.chunks else None
+        aimed = isinstance(verb, VerbGroup) and verb.kind in ("face", "point")  # 'facing down on the rack'
         if (
             norm in _PARTICLES
+            and not aimed
             and self.norms[at + 1] in ("on", "at", "with", "by")
             and (related is None or related[0] == at + 1)
         ):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.noun_positions import ED_NOUNS, NounFinder
+from deixis.grammar.english.chunking.noun_positions import ED_NOUNS, NOUN_OR_PREPOSITION, NounFinder
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.adjectives import COLOUR_SHADES, degree_of, is_adjective, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, NUMBERS, ORDINALS
@@ -42,8 +42,10 @@ class ModifierFinder(NounFinder):
             ):
                 i += 1
                 continue
-            described = is_adjective(norms[i + 1]) or (
-                determined and norm not in ADVERBS and norm not in HEDGES and self._nounish(i + 1)
+            relating = norms[i + 1] in NOUN_OR_PREPOSITION and not self.adjective_before_noun(i + 1)
+            described = not relating and (
+                is_adjective(norms[i + 1])
+                or (determined and norm not in ADVERBS and norm not in HEDGES and self._nounish(i + 1))
             )  # 'an oily rag'
             described = described or (norms[i + 1].endswith("ed") and i == at and norms[i - 1] in prepositions())
             if norm.endswith("ly") and norm not in self._adjectives and described and not self._nouns.knows(norm):

@@ -182,6 +182,8 @@ class NounChunker(ModifierFinder):
 
     def _pronoun(self, at: int, previous: str) -> str | None:
         norm = self.norms[at]
+        if norm in ("her", "hers") and not self._continues(at + 1):
+            return "she"  # 'a lamb lies behind her'
         if norm not in PRONOUNS or at >= len(self.words):
             return None
         if norm == "which" and previous == "PREP":
@@ -198,6 +200,7 @@ class NounChunker(ModifierFinder):
                 if (
                     self._continues(later)
                     or after in ("the", "these", "those")
+                    or (after in POSSESSIVES and norm != "one")
                     or (self.number(at + 1) is not None and norm != "one")
                 ):
                     form = self._verbs.get(after)

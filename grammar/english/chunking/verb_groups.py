@@ -112,7 +112,7 @@ class VerbChunker(RelatorChunker):
             elif norm in NEGATIONS and i > first:
                 positive = not positive if norm != "nor" else positive
             elif i > first and (
-                ((norm in ADVERBS or norm in HEDGES) and self._goes_on(i + 1))
+                ((norm in ADVERBS or norm in HEDGES or norm.endswith("ly")) and self._goes_on(i + 1))
                 or (verb == "be" and norm in HEDGES and norm not in _HEDGES_OF_PLACES)
             ):
                 adverbs.append(norm)
@@ -743,7 +743,7 @@ _TENDING = {
 _GOING = word_set("stand sit step walk go kneel stay wait look")
 """Verbs of commands that take no object."""
 
-_INTRANSITIVE = word_set("lie sit kneel come go rise")
+_INTRANSITIVE = word_set("lie sit kneel come go rise live dwell")
 """Verbs of a state or a motion without an object; before a noun phrase they come before their subject."""
 
 _CROSSING = word_set("move go walk come head step turn")

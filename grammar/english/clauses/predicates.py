@@ -176,7 +176,7 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 found.append(replace(following, relation="middle"))  # 'centred on the table'
             if following is not None and not following.relation.startswith("~"):
                 flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
-                if kind == "unknown" or (lemma in _STATES and following.relation != "pointing"):
+                if lemma in _STATES and following.relation != "pointing":
                     found.append(_state(lemma, predicate))
             elif following is None and lemma in _ARRANGING:
                 found.append(Predicate(_ARRANGING[lemma], (), predicate.span, positive=predicate.positive))

@@ -33,7 +33,8 @@ HABIT = re.compile(
 """Words of what was done again and again, or at an earlier time."""
 WHILE_DOING = re.compile(
     r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed"
-    r"|(?:setting|laying|arranging|preparing|packing|assembling|building|installing|placing|positioning|organi[sz]ing"
+    r"|(?:setting|laying|arranging|preparing|packing|assembling|building|installing|placing|positioning|organi[sz]ing|loading|filling|stacking"
+    r"|storing|hanging|mounting|stocking|planting|plating|packing|unpacking|moving"
     r"|styling|decorating)\b)[a-z]+ing\b[^,]*,",
     re.IGNORECASE,
 )
@@ -158,7 +159,9 @@ FRAMED = re.compile(
     r"(?:in|on)\s+(?:theory|principle|paper|hypothesis|fiction)\b"
     r"|in\s+(?:an?|the|my|his|her|our|their|your|this|some)\s+(?:[\w-]+\s+)?"
     r"(?:world|dreams?|opinion|view|mind|imagination|fantasy|eyes|book|plan|sketch|photo|photograph|painting|portrait|poem|film|movie|video|mirror|catalogue)\s*(?:,|(?=(?:the|an?|my|her|his|[\w-]+['\u2019]s)\s))"
-    r"|in\s+(?:other|some|many|most)\s+(?:countries|families|houses|homes|cultures|regions|places|restaurants)\b"
+    r"|in\s+(?:other|some|many|most|certain|several|different|these|those|such)\s+(?:countries|families|houses|homes|households"
+    r"|cultures|regions|places|restaurants|kitchens|schools|offices|hotels|traditions|settings|situations|scenarios"
+    r"|circumstances|versions|designs|models|setups|cities|areas|religions)\b"
     r"|(?:at\s+(?:best|worst)|for\s+all\s+(?:i|we)\s+know|who\s+knows|with\s+any\s+luck|god\s+knows)\b"
     r"|(?:to\s+(?:hear|believe|judge))\s|contrary\s+to\b"
     r"|(?:reportedly|allegedly|supposedly|hypothetically|theoretically|ostensibly|purportedly|conceivably|potentially)\b"

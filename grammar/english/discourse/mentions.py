@@ -72,7 +72,11 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     spots = noun in ("wall", "ceiling", "floor") and all(
         p.relation in PLACES and not p.arguments and not p.reversed for p in phrase.predicates
     )  # 'on the wall in the corner'
-    return (around and bare) or on_it or spots or (wide and (bare or beside)) or flat or amid or own or stuff
+    placed = entity.role in (Role.VIEWER, Role.PERSON) and all(
+        p.relation == "with" and all(a.predicates and last_word(a.head) not in PARTS for a in p.arguments)
+        for p in phrase.predicates
+    )  # 'in front of the guest with a fork on the left'
+    return (around and bare) or on_it or spots or (wide and (bare or beside)) or flat or amid or own or stuff or placed
 
 
 COMPARTMENTS = frozenset(
@@ -83,6 +87,9 @@ COMPARTMENTS = frozenset(
 
 _LOOSE = frozenset({"clay", "cotton"})
 """Materials that are kept in vessels."""
+
+_NEEDS = frozenset({"place", "room", "space", "spot", "need", "reason", "way", "point", "limit", "sense", "use"})
+"""Nouns of what is not a thing that is missing: *there is no room for the lamp*."""
 
 _SIGNS = frozenset({"sign", "trace", "hint"})
 """Nouns of what shows that a thing is there."""
@@ -188,11 +195,15 @@ class Mentions(Drafting, ABC):
             own_parts = tuple(replace(p, arguments=(whole,)) for p in phrase.predicates)
             self._say(besides, own_parts, phrase, focus=False)
         elif phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
+            outer, with_things = self.how, all(p.relation == "with" for p in phrase.predicates)
+            if with_things:  # 'in front of the guest with a fork on the left, or next to the napkin'
+                self.how = replace(outer, weight=1.0, optional=False, alternative=None)
             self._say(besides, phrase.predicates, phrase, focus=False)
+            self.how = outer
         elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT) and phrase.head not in _SIDES:
             outer, holder = self.how, self.references.holder
             self.references.holder = relation
-            self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
+            self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False, alternative=None)
             own = self.text[phrase.span[0] : self._end_of_own(phrase)]
             if not self.story and PAST_RELATIVE.search(own):
                 self.how = replace(self.how, past=True)
@@ -285,7 +296,7 @@ class Mentions(Drafting, ABC):
         if phrase.of is not None and last_word(phrase.head) in _SIGNS:
             phrase = phrase.of  # 'no sign of the pen'
         entity = self.references.find(replace(phrase, determiner="the", predicates=()))
-        if entity is not None:
+        if entity is not None and phrase.head not in _NEEDS and self.how.condition is None:
             entity.absent = True
             self._add("count", (entity,), (), value="0", how=replace(self.how, positive=True, past=False))
             self.references.recent.insert(0, Focus(entity, [], None, self.how.sentence))
@@ -394,7 +405,7 @@ def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predica
         return False
     other = predicate.arguments[0]
     noun = last_word(other.head)
-    return bool(noun) and not other.members and noun not in SURROUNDINGS | SURFACES | _FURNITURE
+    return bool(noun) and not other.members and noun not in SURROUNDINGS | SURFACES | FURNITURE
 
 
 def _is_packed(phrase: NounPhrase, relation: str | None, predicate: Predicate) -> bool:
@@ -412,7 +423,7 @@ _SUPPORTS_OF_SEVERAL = word_set(
     "desk table tabletop counter countertop worktop bench workbench board shelf sideboard dresser stage"
 )
 """Nouns of what carries many things, most of which are smaller than it is."""
-_FURNITURE = word_set(
+FURNITURE = word_set(
     "chair armchair sofa couch bed stool bookcase wardrobe cupboard fireplace chimney heater radiator stairs staircase"
     " doorway entryway hallway hall gate balcony patio porch terrace fence piano machine washer dryer dishwasher cooker"
     " bath bathtub shower toilet basin person seat audience driver player closet pantry curtain elevator lift column"

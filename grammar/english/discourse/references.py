@@ -11,6 +11,7 @@ from deixis.grammar.english.discourse.entities import Entity, Role, is_one_thing
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
 from deixis.grammar.english.vocabulary.nouns import (
     ABSTRACT,
+    FIGURES,
     GENERAL,
     GROUPS,
     HOLDERS,
@@ -127,6 +128,11 @@ class PronounUse:
     word: str
     chosen: Entity
     others: tuple[Entity, ...]
+
+
+def _is_figure(thing: Entity) -> bool:
+    """Return True for a doll, an animal or a thing with a name of its own: *Anna*."""
+    return last_word(thing.noun) in FIGURES or all(mention[:1].isupper() for mention in thing.mentions)
 
 
 @dataclass
@@ -385,11 +391,13 @@ class References:
 
     def _earlier(self, phrase: NounPhrase) -> Entity | None:
         """Return the earlier object with the same noun, unless the phrase introduces another one."""
+        latest_first = self._named_like(phrase.head)
+        yours = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"we"}  # 'your eight pawns'
+        same = yours and any(entity.size == phrase.count and entity.noun == phrase.head for entity in latest_first)
         if phrase.determiner in ("another", "a", "an", "some", "no") or (
-            phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"}
+            phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"} and not same
         ):
             return None
-        latest_first = self._named_like(phrase.head)
         if _FURTHER.search(self.text[max(0, phrase.span[0] - 12) : phrase.span[0]] + self.words(phrase)):
             return None
         if any(a.word == "matching" for a in phrase.adjectives):
@@ -697,10 +705,12 @@ class References:
             named = (e for f in self.recent for e in (f.subject, *f.others) if e is not None and e is not besides)
             persons = [entity for entity in self.entities if entity.role is Role.PERSON]
             only = persons if len(persons) == 1 else []
-            last = self.recent[0].subject if self.recent and self.recent[0].sentence == self.sentence else None
+            last = self.recent[0].subject if self.recent and self.recent[0].sentence >= self.sentence - 1 else None
             thing = last if last is not None and last.role is Role.THING and last is not besides else None
+            figure = thing if thing is not None and _is_figure(thing) else None
+            thing = thing if self.recent and self.recent[0].sentence == self.sentence else None
             found = next((entity for entity in named if entity.role is Role.PERSON), None)
-            return found or thing or next(iter(only), None)  # 'Joseph stands there with a donkey beside him'
+            return found or thing or next(iter(only), figure)  # 'Joseph stands there with a donkey beside him'
         if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from deixis.grammar.english.confidence import UNANCHORED, Guess
 from deixis.grammar.english.discourse.entities import Entity, Role
-from deixis.grammar.english.discourse.mentions import Mentions
+from deixis.grammar.english.discourse.mentions import FURNITURE, Mentions
 from deixis.grammar.english.discourse.references import CORNERS, OPPOSITES, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS, HOLLOW_SURFACES
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
@@ -86,6 +86,9 @@ _MUTUAL = {"next_to": "near", "against": "touching"}
 """Relation of each to the others, by the relation to *each other*."""
 
 
+_ONE_BY_ONE = {"one behind": "behind", "one in front": "in_front"}
+"""Relation of the first of two things to the second by the words for a row."""
+
 _BESIDE = frozenset({"left", "right", "in_front", "behind", "next_to", "near"})
 
 _FORMS = frozenset(
@@ -102,6 +105,10 @@ def _whole(entity: Entity) -> Entity:
 
 _LATERAL = frozenset({"left", "right"})
 """Relations after which *the other side* of a thing is the opposite one."""
+
+
+_ON_A_SIDE = re.compile(r"\b(?:on|at)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
+"""Words by which a side is a part of the surface, and not a direction from it."""
 
 
 def _are_contents(held: Entity, vessel: Entity) -> bool:
@@ -267,7 +274,15 @@ class Relations(Mentions):
             if subject.itself.members:
                 subject.itself.aliases.add({"stacked": "stack"}.get(relation, relation))
                 self.references.renamed.append(subject.itself)  # later 'the row'
-            value = predicate.part if relation == "row" else None
+            one_by_one = next(
+                (end for words, end in _ONE_BY_ONE.items() if (predicate.part or "").startswith(words)), None
+            )
+            if relation == "row" and one_by_one is not None and subject.size == 2:
+                first, second = subject.leaves()
+                self._pair(first, one_by_one, second, False)  # 'two jugs, one behind the other'
+                return
+            directed = relation == "row" and " to " in (predicate.part or "")  # 'left to right'
+            value = predicate.part if directed else None
             if relation == "stacked" and "inside" in self.text[predicate.span[0] : predicate.span[1]]:
                 relation = "nested"
             self._add(relation, tuple(dict.fromkeys([subject, *entities])), (), value=value)
@@ -282,7 +297,17 @@ class Relations(Mentions):
                 )
             return
         for other in entities:
-            self._pair(subject, relation, other, predicate.reversed)
+            written = self.text[slice(*predicate.span)].casefold()
+            on_it = other.role is Role.SURFACE and subject.role is not Role.SURFACE and not predicate.reversed
+            if (
+                on_it
+                and relation in _LATERAL
+                and _ON_A_SIDE.search(written)
+                and last_word(subject.noun) not in FURNITURE
+            ):
+                self._add("part", (subject,), (), value=relation)  # 'on the left side of the tray'
+            else:
+                self._pair(subject, relation, other, predicate.reversed)
 
     def _host_of(self, phrase: NounPhrase, relation: str, subject: Entity) -> Entity | None:
         """Return the thing before, of which *the rim* is: *the plate is here, with a knife across the rim*."""

@@ -201,7 +201,7 @@ def said_of_claim(claim: Claim, surface: str = "table", name: Namer = name_plain
         case "distance" | "distance_less" | "distance_more":
             bound = {"distance_less": "less than ", "distance_more": "more than "}.get(relation, "")
             return f"{bound}{100 * (claim.metres or 0):g} cm from {where}"
-        case "closer" | "farther" if claim.arguments:
+        case "closer" | "farther" if len(claim.arguments) > 1 or (value and claim.arguments):
             to = f"the {value}" if value else name(claim.arguments[:1])
             return f"{relation_words(relation)} {to} than {name(claim.arguments[-1:])}"
         case "on" if not claim.arguments:

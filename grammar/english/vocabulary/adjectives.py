@@ -59,6 +59,25 @@ _MATERIAL_NOUNS = word_set(
 COLOUR_SHADES = frozenset({"light", "dark", "pale", "bright", "deep", "medium", "off"})
 
 
+QUALITIES = word_set(
+    "easy easier difficult simple ready able unable essential possible impossible likely unlikely common traditional"
+    " formal informal casual good excellent true false accurate sure invisible special unique rare ordinary basic"
+    " previous current recent damp moist strong weak stable rough smooth sharp blunt quiet loud crowded cluttered safe"
+    " dangerous risky careful gentle quick fast slow bulky foldable removable adjustable optional seasonal ornamental"
+    " functional practical cozy cosy rustic festive cheap expensive free complete partial external internal indoor"
+    " outdoor automatic raw ripe frozen salty spicy hungry thirsty tired happy sad angry afraid proud famous"
+    " popular alive sick healthy flexible fragile delicate breakable precious valuable worthless hollow uneven"
+    " symmetrical asymmetrical convex concave wavy spotted translucent lightweight waterproof airtight concentric"
+    " oblique frequent occasional permanent temporary tight snug slack ample enough sufficient adequate scarce abundant"
+    " limited minimal moderate excessive fragrant scented perishable edible drinkable acceptable desirable preferable"
+    " advisable customary conventional courteous polite rude sacred ancient medieval unstable unsafe uncomfortable"
+    " inconvenient unnecessary inaccessible"
+)
+"""Qualities that are not things by themselves: *it is easy to reach*. Before a noun they are part of its name.
+
+A thing is told apart by its name, so that *the sharp knife* and *the blunt knife* are two things.
+"""
+
 EMPTY = frozenset({"empty", "bare", "clear"})
 """Words for what has nothing on it or in it."""
 

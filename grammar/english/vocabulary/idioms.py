@@ -31,7 +31,7 @@ IDIOMS = tuple(
         "check that",
         "see to it that",
         "right now",
-        *("one after another", "one after the other", "all at once", "all at one time", "in that order"),
+        *("one after another", "all at once", "all at one time", "in that order"),
         *("take a step back", "take a few steps back", "step back", "stand back"),
         "next to useless",
         "next to nothing",

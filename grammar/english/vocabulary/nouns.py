@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from deixis.grammar.english.vocabulary.tables import word_set
+
 SURFACES = frozenset(
     [
         "table",
@@ -43,6 +45,12 @@ SURFACES = frozenset(
     ]
 )
 """Nouns of things that other things are laid out on."""
+
+FIGURES = word_set(
+    "baby child infant doll puppet figure figurine statue saint king queen prince princess angel dog cat horse cow"
+    " donkey ox sheep lamb rabbit mouse bird robot dinosaur dragon knight"
+)
+"""Nouns of figures and animals, which can have a name, and which *he* and *she* can stand for."""
 
 PEOPLE = frozenset(
     [

@@ -127,7 +127,8 @@ through: through, thru, via
 like: like, similar to, looking like, identical to
 -: for, as, during, except, except for, besides from, per, because of, instead of, due to, rather than, such as
 -: since, until, till, after, same as, belonging to, according to, unlike, than
-with: with, w/, complete with, together with, along with, full of, half full of, filled with, half filled with
+with: with, w/, complete with, together with, along with, accompanied by
+with: full of, half full of, filled with, half filled with
 without: without, with out
 """
 
@@ -155,6 +156,8 @@ between: in between
 around: all around, around
 opposite: opposite, across
 upside_down: upside down, face down, mouth down, bottom up, face-down, mouth-down, upside-down
+near_each_other: one next to the other, one beside the other
+row: one behind the other, one in front of the other, one after the other, single file, in single file
 near_each_other: side by side, next to each other, next to one another, beside each other, together, close together
 near_each_other: near each other, adjacent to each other, beside one another
 nested: inside one another, nested in one another, one inside the other, inside each other, nested in each other

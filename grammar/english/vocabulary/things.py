@@ -37,7 +37,12 @@ _ACTS = word_set(
     " order sequence priority preference need want wish desire demand use usage reach ease convenience help support"
     " advice guidance reminder warning caution care attention focus emphasis effort work play fun rest sleep exercise"
     " ritual ceremony celebration symbolism representation worship prayer blessing creation impact influence"
-    " observation experience event occasion matter fact detail information word"
+    " observation experience event occasion matter fact detail information word culture religion society language"
+    " literature career hobby marriage childhood youth opportunity threat challenge success failure progress growth"
+    " change trend context aspect factor role budget economy industry trade hospitality courtesy manners behavior"
+    " behaviour respect honor honour pride fear anger surprise pleasure pain stress hurry rush chaos size weight hunch"
+    " truth rumor rumour talent force pace rhythm war fight talk chat trip journey travel holiday birthday"
+    " wedding funeral appetite hunger thirst duty arrival departure overview routine tutorial hint repeat"
 )
 _TIMES = word_set(
     "time moment second minute hour day night morning afternoon evening week weekend month season year century age"

@@ -168,7 +168,7 @@ def test_things_joined_by_or_are_a_choice(text: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["Knives or scissors go into the drawer.", "Stones and/or a brick lie in the drawer.",
+    ["Knives or scissors go into the drawer.", "Stones and/or bricks lie in the drawer.",
      "A knife or a fork must not be in the drawer."],
 )  # fmt: skip
 def test_kinds_and_denials_joined_by_or_are_not(text: str) -> None:

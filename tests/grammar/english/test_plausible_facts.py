@@ -227,3 +227,74 @@ def test_which_things_and_sides_are_meant(text: str, expected: list[str]) -> Non
 )  # fmt: skip
 def test_postures_and_persons(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Put the plate in front of the guest with a fork on the left, above the mat or next to the mat.",
+         ["part(fork, 'left')", "in_front(plate, 'guest')", "above(plate, mat)", "next_to(plate, mat)"]),
+        ("Put the candle on a shelf or on a stool near the tree.",
+         ["on(candle, shelf)", "near(stool, tree)", "on(candle, stool)"]),
+        ("All your pens are on the red mat.", ["on(pens, mat)"]),
+        ("The bowl can be layered on top of the plate.", ["on(bowl, plate)"]),
+        ("A kit consisting of a fork and a knife is left of the plate.", ["left(kit, plate)"]),
+        ("There is no room for the lamp, so the lamp is under the shelf.", ["under(lamp, shelf)"]),
+        ("The tray, such as often seen in bars, is on the mat.", ["on(tray, mat)"]),
+        ("Most traditionally the napkin lies under the fork.", ["under(napkin, fork)"]),
+        ("In some cultures, the napkin is under the fork. The cup is left of it.", ["left(cup, napkin)"]),
+        ("The jug is on the shelf (easy to reach). The cup is inside the jug.", ["on(jug)", "inside(cup, jug)"]),
+        ("The proper place for the fork is to the left of the plate.", ["left(fork, plate)"]),
+        ("Glasses should be facing down on the red mat.", ["facing(glasses, 'down')", "on(glasses, mat)"]),
+        ("Below the mirror, in the cupboard, live the towels.", ["below(towels, mirror)", "inside(towels, cupboard)"]),
+        ("The cup is on the mat. If you serve bread and there is no mat, put it behind the jug.", ["on(cup, mat)"]),
+        ("Two pawns are behind the king. Move your two pawns in front of the queen.",
+         ["behind(pawn_1, king)", "behind(pawn_2, king)", "in_front(pawn_1, queen)", "in_front(pawn_2, queen)"]),
+        ("When loading the rack, put the cups on the red mat.", ["on(cups, mat)"]),
+        ("The clamp is near the assembly inside the crate.", ["inside(assembly, crate)", "near(clamp, assembly)"]),
+    ],
+)  # fmt: skip
+def test_words_beside_a_place_change_nothing(text: str, expected: list[str]) -> None:
+    assert asserted_if_any(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Anna sits on the shelf. A lamb is beside her.", ["on(anna)", "next_to(lamb, anna)"]),
+        ("The doll Anna sits on the mat, with a lamb behind her.", ["on(anna, mat)", "behind(lamb, anna)"]),
+        ("Mary is left of the stable, accompanied by an ox behind her.", ["left(mary, stable)", "behind(ox, mary)"]),
+    ],
+)
+def test_figures_with_names_are_he_and_she(text: str, expected: list[str]) -> None:
+    assert asserted_if_any(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The mats lie one behind the other on the tray.", ["row(mats)", "on(mats)"]),
+        ("Two jugs are on the tray, one behind the other.", ["on(jug_1)", "on(jug_2)", "behind(jug_1, jug_2)"]),
+        ("Place the jars one next to the other.", ["near_each_other(jars)"]),
+    ],
+)
+def test_one_by_one_is_a_row(text: str, expected: list[str]) -> None:
+    assert asserted_if_any(text) == expected
+
+
+def test_a_side_of_the_surface_is_a_part_of_it() -> None:
+    text = "The jug is on the right side of the table. The chair is on the left side of the table."
+    assert asserted(text) == ["part(jug, 'right')", "left(chair, 'table')"]
+
+
+def test_what_is_probably_wrong_is_a_message_only() -> None:
+    reading = read("The jug is behind the cup. The cup is placed along with a spoon above eye level.")
+    assert [str(f.content) for f in reading.stated] == ["behind(jug, cup)"]
+    assert any("not the name of a thing" in problem.message for problem in reading.sentences[1].problems)
+
+
+def test_options_of_a_choice_are_not_denied() -> None:
+    script = read_english("The fork is left of the plate, the bowl or the cup.")
+    assert [(str(fact), fact.weight) for fact in script.facts] == [
+        ("left(fork, plate)", 0.5), ("left(fork, bowl)", 0.5), ("left(fork, cup)", 0.5),
+    ]  # fmt: skip

@@ -408,6 +408,18 @@ def _examples(chunks: list[Chunk], at: int) -> Run | None:
     return last + closed, None
 
 
+def _comparison_apart(chunks: list[Chunk], at: int) -> Run | None:
+    """Find a comparison between commas that has no thing of its own: *the menu, such as often seen in cafés, …*."""
+    words = [c.value for c in chunks[at + 1 : at + 3] if c.type == "UNKNOWN"]
+    if type_at(chunks, at) != "COMMA" or words != ["such", "as"]:
+        return None
+    end = next((k for k in range(at + 3, len(chunks)) if chunks[k].type == "COMMA"), None)
+    if end is None:
+        return None
+    leave_out(chunks[at + 1 : end], "a comparison does not say where something is")
+    return end + 1, None
+
+
 def _first_of_two_commands(chunks: list[Chunk], at: int) -> Run | None:
     """Find the first of two verbs with one object, which looks like a noun: *and pull and fold the corners …*."""
     types = [type_at(chunks, at + k) for k in range(-1, 4)]
@@ -543,6 +555,7 @@ def _replacement(chunks: list[Chunk], at: int) -> Run | None:
 
 REWRITES = (
     without(_framing), without(_manner), without(_consequence), without(_compared_quality), without(_examples),
+    without(_comparison_apart),
     without(_first_of_two_commands), without(_used_things), without(_followers),
     without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement),
     without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),

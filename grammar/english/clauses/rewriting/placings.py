@@ -5,11 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
-from deixis.grammar.english.chunking.chunk import FINITE, Chunk, Relator, VerbGroup
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import ENDS, Run, leave_out, put_in, type_at, without
 from deixis.grammar.english.tree import Degree, NounPhrase
-from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, HEADED, HOLDERS, PEOPLE, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    AIMED_PARTS,
+    HEADED,
+    HOLDERS,
+    PEOPLE,
+    PLACES_OF,
+    SURFACES,
+    VESSELS,
+    last_word,
+)
 from deixis.grammar.english.vocabulary.relation_words import Preposition
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
@@ -292,8 +301,22 @@ def _with_gaps(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_owners_of_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the proper place for the fork is …* as *the proper place of the fork is …*."""
+    found = list(chunks)
+    for i, chunk in enumerate(chunks):
+        types = [type_at(chunks, i + k) for k in range(4)]
+        begins = type_at(chunks, i - 1) in JOINT_TYPES | {"", "ADVERB"}
+        if begins and types == ["NP", "PREP", "NP", "BE"] and chunk.value.head in PLACES_OF:
+            relator = chunks[i + 1]
+            if relator.value.preposition.phrase == "for":
+                found[i + 1] = Chunk("OF", relator.start, relator.end, None, relator.span)
+    return found
+
+
 REWRITES = (
-    _with_purposes_of_places, _with_measures_denied, _with_destinations, without(_place_taken), _with_gaps,
-    _with_aimed_parts, _with_shared_objects, _with_aims_of_subjects, _with_places_of_nearest,
+    _with_owners_of_places, _with_purposes_of_places, _with_measures_denied, _with_destinations,
+    without(_place_taken), _with_gaps, _with_aimed_parts, _with_shared_objects,
+    _with_aims_of_subjects, _with_places_of_nearest,
 )  # fmt: skip
 """Rewritings of places, in their order."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.graph.claims import Claim
@@ -44,7 +45,7 @@ def reading_lines(script: Script) -> list[str]:
             lines.append(f"    = {sentence.paraphrase}")
         elif sentence.question:
             lines.append("    a question: it states no fact")
-        lines += [f"    {fact.content}{_marks(fact)}" for fact in reading.stated if fact.sentence == number]
+        lines += [f"    {_content(fact)}{_marks(fact)}" for fact in reading.stated if fact.sentence == number]
         lines += [doubt(f"    {problem.source}: {problem.message}") for problem in sentence.problems]
     if reading.absent:
         lines.append(f"Not there: {', '.join(reading.absent)}.")
@@ -52,6 +53,11 @@ def reading_lines(script: Script) -> list[str]:
         lines.append(f"Groups of unknown number: {', '.join(reading.uncounted)}.")
     lines.append(f"Understood: {reading.understood:.0%} of the words.")
     return lines
+
+
+def _content(fact: StatedFact) -> str:
+    """Return a fact or claim; an option of a choice has the weight of its share, and is not something rare."""
+    return str(fact.content if fact.alternative is None else replace(fact.content, weight=1.0))
 
 
 def _marks(fact: StatedFact) -> str:
@@ -146,7 +152,7 @@ def read_text_rows(found: ReadText) -> Iterator[dict[str, Any]]:
     """
     for fact in found.reading.stated:
         yield {
-            "fact": str(fact.content),
+            "fact": _content(fact),
             "asserted": fact.asserted,
             "condition": fact.condition,
             "confidence": fact.confidence,
