@@ -16,7 +16,7 @@ from typing import Any
 
 from deixis.errors import DeixisError
 from deixis.grammar.files import read_text
-from deixis.ontology.strict_json import json_type, parse_json_line
+from deixis.ontology.strict_json import json_type, read_json_lines
 
 MAX_CHARACTERS = 5_000
 """Maximum number of characters of an utterance."""
@@ -150,18 +150,8 @@ def utterances_of_lines(
     >>> utterances_of_lines(['{"text": "a fork", "at": 3, "speaker": "anna"}'])[0].speaker
     'anna'
     """
-    found = []
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
-        try:
-            data = parse_json_line(line, file, number, UtteranceError, "is not a number")
-            found.append(_utterance(data, f"{file}:{number}"))
-        except UtteranceError as error:
-            if refused is None:
-                raise
-            refused.append(str(error))
-    return tuple(sorted(found, key=lambda one: one.at))
+    found = read_json_lines(lines, file, _utterance, UtteranceError, "is not a number", refused)
+    return tuple(sorted((one for _, one in found), key=lambda one: one.at))
 
 
 def _utterance(data: Any, where: str) -> Utterance:

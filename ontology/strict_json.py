@@ -6,10 +6,13 @@ import json
 import math
 import re
 from collections import Counter
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, TypeVar
 
 from deixis.errors import DeixisError
 from deixis.printable import shortened
+
+Record = TypeVar("Record")
 
 MAX_DIGITS = 308
 """Maximum number of digits of a whole number, so that each converts to a finite double."""
@@ -163,6 +166,61 @@ MISTAKES = {
     "Invalid control character at": "a string must be closed by '\"' on its own line",
 }
 """Replacements for messages of Python's JSON reader that do not say what to do."""
+
+
+def read_json_lines(
+    lines: Iterable[str],
+    file: str,
+    read: Callable[[Any, str], Record],
+    error: type[DeixisError],
+    no_number: str | None,
+    refused: list[str] | None = None,
+) -> Iterator[tuple[int, Record]]:
+    """Yield the numbers of the lines of a file of JSON lines, from 1, and what is read from each.
+
+    Parameters
+    ----------
+    lines
+        Lines; blank ones are skipped.
+    file
+        Name of the file, for messages.
+    read
+        Function of the data of a line and its place ``file:line``, which raises ``error`` for invalid data.
+    error, no_number
+        As for :func:`parse_json`.
+    refused
+        List that gets the message about each invalid line, which is left out then; None to raise an error about the
+        first one.
+
+    Yields
+    ------
+    tuple
+        Number of the line, and the result of ``read``.
+
+    Raises
+    ------
+    error
+        If a line is invalid and ``refused`` is None.
+
+    Examples
+    --------
+    >>> refused = []
+    >>> list(read_json_lines(["1", "", "{", "2"], "t.jsonl", lambda data, where: data, DeixisError, None, refused))
+    [(1, 1), (4, 2)]
+    >>> len(refused)
+    1
+    """
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            found = read(parse_json_line(line, file, number, error, no_number), f"{file}:{number}")
+        except error as wrong:
+            if refused is None:
+                raise
+            refused.append(str(wrong))
+        else:
+            yield number, found
 
 
 def json_mistake(text: str, position: int, message: str) -> str:

@@ -8,7 +8,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.outline import cell_codes
+from deixis.perception.detection.outline import connected
 from deixis.perception.detection.settings import DetectionSettings, NoteSettings
 from deixis.perception.detection.table.heights import Raised
 from deixis.perception.detection.table.table_top import TableTop
@@ -134,43 +134,6 @@ def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSet
     if _reaches_over(top.outside, pieces, settings.notes):
         notes.append("something reaches over the edge of the table: a hand, an arm, or an object that hangs over it")
     return tuple(notes)
-
-
-def connected(points: NDArray[np.float64], cell: float) -> NDArray[np.intp]:
-    """Return the number of the connected group of each point, from 0.
-
-    Parameters
-    ----------
-    points
-        Points of shape (n, 3), in metres.
-    cell
-        Side of the cells of a grid in metres; points in the same cell or in adjacent ones are connected.
-
-    Returns
-    -------
-    ndarray
-        Numbers of shape (n,).
-
-    Examples
-    --------
-    >>> connected(np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [9.0, 9.0, 9.0]]), 0.02).tolist()
-    [0, 0, 1]
-    """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    codes, of = np.unique(cell_codes(points, cell), return_inverse=True)
-    steps = [(x << 42) + (y << 21) + z for x in (0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)]
-    starts, ends = [], []
-    for step in (each for each in steps if each > 0):
-        at = np.minimum(np.searchsorted(codes, codes + step), max(len(codes) - 1, 0))
-        met = np.flatnonzero(codes[at] == codes + step)
-        starts.append(met)
-        ends.append(at[met])
-    start, end = np.concatenate(starts), np.concatenate(ends)
-    graph = coo_array((np.ones(len(start), np.bool_), (start, end)), shape=(len(codes), len(codes)))
-    groups: NDArray[np.intp] = connected_components(graph, directed=False)[1][of].astype(np.intp)
-    return groups
 
 
 def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSettings) -> bool:

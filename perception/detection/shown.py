@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.outline import SECTORS
+from deixis.perception.detection.outline import SECTORS, connected
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.table.plane import coordinates
 from deixis.perception.detection.table.tables import FoundTable
@@ -164,15 +164,9 @@ def share_connected(points: NDArray[np.float64], gap: float) -> float:
     float
         Fraction in [0, 1], without the outermost points.
     """
-    from scipy.ndimage import label
-
     points = points[:: max(1, len(points) // 20_000)]
     low, high = np.percentile(points, (0.5, 99.5), axis=0)
     inside = ((points >= low) & (points <= high)).all(axis=1)
     if not inside.any():
         return 0.0
-    cells = np.floor((points[inside] - low) / gap).astype(np.int64)
-    grid = np.zeros(cells.max(axis=0) + 1, dtype=np.bool_)
-    grid[tuple(cells.T)] = True
-    pieces, _ = label(grid, np.ones((3, 3, 3)))
-    return float(np.bincount(pieces[tuple(cells.T)]).max() / len(cells))
+    return float(np.bincount(connected(points[inside], gap)).max() / inside.sum())

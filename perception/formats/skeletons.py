@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from deixis.ontology.strict_json import json_type, parse_json_line
+from deixis.ontology.strict_json import json_type, read_json_lines
 from deixis.perception.checks import shown
 from deixis.perception.errors import PointingError
 from deixis.perception.pointing.skeleton import MAX_REACH, Position, Skeleton
@@ -94,21 +94,8 @@ def skeletons_of_lines(
     last: dict[str, float] = {}
     unseen: list[int] = []
     late: list[int] = []
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
-        where = f"{file}:{number}"
-        if number > MAX_LINES:
-            raise PointingError(f"{where}: more than {MAX_LINES:,} lines; split the file")
-        if len(line) > MAX_LINE_CHARACTERS:
-            raise PointingError(f"{where}: more than {MAX_LINE_CHARACTERS:,} characters in a line; a line is one frame")
-        try:
-            skeleton, complete = _skeleton(parse_json_line(line, file, number, PointingError, no_number=None), where)
-        except PointingError as error:
-            if refused is None:
-                raise
-            refused.append(str(error))
-            continue
+    found = read_json_lines(_within_limits(lines, file), file, _skeleton, PointingError, None, refused)
+    for number, (skeleton, complete) in found:
         if not complete:
             unseen.append(number)
         if skeleton.at <= last.get(skeleton.person, -math.inf):
@@ -128,6 +115,18 @@ def _note(lines: list[int], what: str) -> Iterator[str]:
         yield f"line {lines[0]}: {what}"
     elif lines:
         yield f"{len(lines)} lines, the first is {lines[0]}: {what}"
+
+
+def _within_limits(lines: Iterable[str], file: str) -> Iterator[str]:
+    """Yield the lines; raise an error at one that is too long or beyond the maximum number."""
+    for number, line in enumerate(lines, 1):
+        if number > MAX_LINES and line.strip():
+            raise PointingError(f"{file}:{number}: more than {MAX_LINES:,} lines; split the file")
+        if len(line) > MAX_LINE_CHARACTERS and line.strip():
+            raise PointingError(
+                f"{file}:{number}: more than {MAX_LINE_CHARACTERS:,} characters in a line; a line is one frame"
+            )
+        yield line
 
 
 def _skeleton(data: Any, where: str) -> tuple[Skeleton, bool]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from deixis.errors import DeixisError
-from deixis.ontology.strict_json import parse_json, parse_json_line
+from deixis.ontology.strict_json import parse_json, parse_json_line, read_json_lines
 
 
 @pytest.mark.parametrize(
@@ -40,6 +40,19 @@ def test_mistakes_in_a_file_of_json_lines_have_their_line() -> None:
         parse_json_line('\ufeff[1,{"a":', "t.jsonl", 3, DeixisError, None)
     with pytest.raises(DeixisError, match=r"^t.jsonl:3: the JSON is nested too deeply"):
         parse_json_line("[" * 50_000, "t.jsonl", 3, DeixisError, None)
+
+
+def test_refused_lines_are_left_out_and_reported() -> None:
+    def positive(data: int, where: str) -> int:
+        if data <= 0:
+            raise DeixisError(f"{where}: must be positive, got {data}")
+        return data
+
+    lines, refused = ["3", " ", "-1", "{", "4"], list[str]()
+    assert list(read_json_lines(lines, "t.jsonl", positive, DeixisError, None, refused)) == [(1, 3), (5, 4)]
+    assert [message.split(" ")[0] for message in refused] == ["t.jsonl:3:", "t.jsonl:4:"]
+    with pytest.raises(DeixisError, match=r"t\.jsonl:3: must be positive"):
+        list(read_json_lines(lines, "t.jsonl", positive, DeixisError, None))
 
 
 @pytest.mark.parametrize("digits", ["9" * 309, "-" + "9" * 309, "9" * 5000], ids=len)

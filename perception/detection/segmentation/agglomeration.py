@@ -19,7 +19,8 @@ def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_dela
 
     The pair with the smallest delay is merged as long as its mean evidence is below ``limit``. The delay is the
     evidence, plus up to ``colour_delay`` for a difference of the mean colours; ``full_difference`` makes it whole. Ties
-    go to the pair with the lower numbers.
+    go to the pair with the lower numbers. If the colours differ by ``full_difference``, the mean evidence between the
+    region of less weight and all its neighbours of the other's colour must be below ``limit`` too.
 
     Parameters
     ----------
@@ -61,6 +62,11 @@ def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_dela
         e = heap[0]
         size = _remove(e, heap, keys, place, size, ties)
         a, b = min(ends[e, 0], ends[e, 1]), max(ends[e, 0], ends[e, 1])
+        small, large = (a, b) if weight[a] < weight[b] else (b, a)
+        if _unlike(means, a, b, full_difference) == 1.0 and _is_on(
+            small, large, limit, full_difference, means, ends, length, total, first, after
+        ):
+            continue
         root[b] = a
         merges += 1
         _unlink(2 * e, ends[e, 0], first, after, before)
@@ -138,6 +144,22 @@ def _unlike(means, a, b, full_difference):  # type: ignore[no-untyped-def]
     x, y, z = means[a, 0] - means[b, 0], means[a, 1] - means[b, 1], means[a, 2] - means[b, 2]
     tint = x * x + y * y + z * z
     return 1.0 if tint >= full_difference * full_difference else np.sqrt(tint) / full_difference
+
+
+@njit(cache=True, nogil=True)
+def _is_on(a, b, limit, full_difference, means, ends, length, total, first, after):  # type: ignore[no-untyped-def]
+    """Return True if the evidence between ``a`` and all neighbours with the colour of ``b`` reaches the limit.
+
+    A neighbour has the colour of ``b`` if the two differ by less than half of ``full_difference``.
+    """
+    met, against, at = 0.0, 0.0, first[a]
+    while at >= 0:
+        edge, other = at // 2, ends[at // 2, 1 - at % 2]
+        if _unlike(means, b, other, full_difference) < 0.5:
+            met += length[edge]
+            against += total[edge]
+        at = after[at]
+    return against >= limit * met
 
 
 @njit(cache=True, nogil=True)

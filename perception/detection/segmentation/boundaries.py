@@ -146,9 +146,10 @@ def agglomerated(
 
     Notes
     -----
-    Colours only change the order of the merges. Where a knife ends on the rim of a plate, only the colour separates the
-    two; once the rim is whole, other evidence along the knife separates them. Regions of several colours are still
-    merged, such as the prints on a box.
+    Colours delay merges. Where a knife ends on the rim of a plate, only the colour separates the two; once the rim is
+    whole, other evidence along the knife separates them. The knife may divide the plate into halves that do not meet,
+    and end smoothly on one of them; so the evidence along all neighbours of the plate's colour must allow the merge.
+    Regions of several colours are still merged, such as the prints on a box.
 
     Examples
     --------

@@ -68,7 +68,7 @@ BELIEF_DRAWS = 8.0
 
 PROPOSALS_PER_CLOCK_CHECK = 5e4
 
-GUIDE_SHARE, COARSE_GUIDE_SHARE = 0.2, 0.5
+GUIDE_SHARE, COARSE_GUIDE_SHARE = 0.2, 0.6
 """Shares of the time that the guide may take: of dense belief propagation, and of that from coarse to fine."""
 
 CHAINS_SHARE = 0.9

@@ -117,7 +117,11 @@ def starts_of(problem: Compiled, places: NDArray[np.float32] | None, deadline: D
         propagation, before = CoarseToFine(problem, places), deadline.left
         found = _with_run(None, *propagation.beliefs(deadline), deadline)
         seconds = before - deadline.left if math.isfinite(before) else 0.0
-        while len(found.runs) < RUNS and deadline.left > (1.0 + SECONDS_OF_REFINEMENT) * seconds:
+        while len(found.runs) < RUNS:
+            # The second run shows where the first is wrong, so time is reserved for a refinement only after it.
+            needed = 1.0 if len(found.runs) == 1 else 1.0 + SECONDS_OF_REFINEMENT
+            if deadline.left <= needed * seconds:
+                break
             found = _with_run(found, *propagation.beliefs(deadline, seed=len(found.runs)), deadline)
         if len(found.runs) > 1 and deadline.left > SECONDS_OF_REFINEMENT * seconds:
             found = _with_run(found, *propagation.refined(found.beliefs.astype(np.float32), deadline), deadline)

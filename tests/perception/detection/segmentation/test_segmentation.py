@@ -70,7 +70,7 @@ def test_no_boundary_with_little_evidence_is_left(count: int, seed: int) -> None
     pairs = np.stack([a[chosen], b[chosen]], axis=1).astype(np.int64)
     lengths, evidence = rng.integers(1, 9, len(pairs)).astype(float), rng.random(len(pairs))
     meeting = Boundaries(pairs, lengths, evidence, np.zeros(len(pairs)))
-    of = agglomerated(meeting, 20 * rng.random((count, 3)), rng.random(count), BoundarySettings(merge_limit=0.5))
+    of = agglomerated(meeting, 3 * rng.random((count, 3)), rng.random(count), BoundarySettings(merge_limit=0.5))
     assert of[0] == 0 and set(of.tolist()) == set(range(of.max() + 1))
     left = of[pairs]
     for one, other in {(int(min(p)), int(max(p))) for p in left if p[0] != p[1]}:
@@ -82,24 +82,42 @@ def test_no_boundary_with_little_evidence_is_left(count: int, seed: int) -> None
 def merged_by_search(
     meeting: Boundaries, colours: NDArray[np.float64], weights: NDArray[np.float64], limits: BoundarySettings
 ) -> list[int]:
-    """Return the regions of agglomeration by a search of all pairs before each merge."""
-    of = list(range(len(weights)))
+    """Return the regions of agglomeration by a search of all pairs before each merge.
+
+    A pair that is refused for its colours is examined again when one of its regions has grown.
+    """
+    of, refused = np.arange(len(weights)), set[tuple[int, int]]()
+
+    def unlike(a: int, b: int) -> float:
+        first, second = (np.average(colours[of == k], axis=0, weights=weights[of == k]) for k in (a, b))
+        return min(float(np.linalg.norm(first - second)) / limits.full_colour_difference, 1.0)
+
+    def is_on(small: int, large: int, edges: dict[tuple[int, int], NDArray[np.float64]]) -> bool:
+        around = [(sum(pair) - small, row) for pair, row in edges.items() if small in pair]
+        alike = [row for other, row in around if unlike(large, other) < 0.5]
+        length, total = np.sum(alike, axis=0)
+        return bool(total >= limits.merge_limit * length)
+
     while True:
-        edges: dict[tuple[int, int], tuple[float, float]] = {}
+        edges: dict[tuple[int, int], NDArray[np.float64]] = {}
         for (a, b), length, evidence in zip(meeting.pairs.tolist(), meeting.lengths, meeting.evidence, strict=True):
-            pair = (min(of[a], of[b]), max(of[a], of[b]))
-            before = edges.get(pair, (0.0, 0.0))
-            edges[pair] = (before[0] + length, before[1] + length * evidence)
-        best = (np.inf, 0, 0)
-        for (a, b), (length, total) in edges.items():
-            if a == b or total / length >= limits.merge_limit:
-                continue
-            means = [np.average(colours[np.array(of) == k], axis=0, weights=weights[np.array(of) == k]) for k in (a, b)]
-            share = min(float(np.linalg.norm(means[0] - means[1])) / limits.full_colour_difference, 1.0)
-            best = min(best, (total / length + limits.colour_delay * share, a, b))
-        if best[0] >= limits.merge_limit + limits.colour_delay:
+            if of[a] != of[b]:
+                pair = (min(of[a], of[b]), max(of[a], of[b]))
+                edges[pair] = edges.get(pair, np.zeros(2)) + np.array([length, length * evidence])
+        keys = [
+            (total / length + limits.colour_delay * unlike(*pair), *pair)
+            for pair, (length, total) in edges.items()
+            if total / length < limits.merge_limit and pair not in refused
+        ]
+        if not keys:
             return [int(k) for k in np.unique(of, return_inverse=True)[1]]
-        of = [best[1] if k == best[2] else k for k in of]
+        _, a, b = min(keys)
+        small, large = (a, b) if weights[of == a].sum() < weights[of == b].sum() else (b, a)
+        if unlike(a, b) == 1.0 and is_on(small, large, edges):
+            refused.add((a, b))
+        else:
+            refused = {pair for pair in refused if not {a, b} & {*pair}}
+            of[of == b] = a
 
 
 @settings(max_examples=30, deadline=None)
@@ -119,6 +137,14 @@ def test_colour_decides_the_order_of_merges(tint: float, expected: list[int]) ->
     pairs, evidence = np.array([[0, 1], [0, 2], [1, 2]]), np.array([0.0, 1.4, 0.1])
     meeting = Boundaries(pairs, np.array([4.0, 8.0, 4.0]), evidence, np.zeros(3))
     assert agglomerated(meeting, np.array([knife, rim, other]), np.ones(3), BoundarySettings()).tolist() == expected
+
+
+@pytest.mark.parametrize(("evidence", "expected"), [(1.0, [0, 1, 2]), (0.3, [0, 0, 0])])
+def test_a_knife_across_a_plate_joins_neither_half(evidence: float, expected: list[int]) -> None:
+    """Check that a knife that ends smoothly on one half stays separate, and that the prints on a box do not."""
+    meeting = Boundaries(np.array([[0, 1], [0, 2]]), np.array([4.0, 20.0]), np.array([0.1, evidence]), np.zeros(2))
+    colours = np.array([(20.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
+    assert agglomerated(meeting, colours, np.array([1.0, 4.0, 4.0]), BoundarySettings()).tolist() == expected
 
 
 def test_a_smooth_surface_of_two_colours_is_one_object() -> None:

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matching_problems import problems
 
-from deixis.deadline import Deadline
+from deixis.deadline import CLOCK, Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.matching.posterior import starts
@@ -66,6 +66,23 @@ def test_without_time_there_is_one_run() -> None:
     table = generate(12, seed=1)
     problem = no_unary_evidence(table.description(), table.scene()).problem
     assert len(starts_of(problem.compiled, None, Deadline.after(-1.0)).runs) == 1
+
+
+@pytest.mark.usefixtures("_all_are_large")
+@pytest.mark.parametrize(("seconds", "runs"), [(1.5, 1), (2.5, 2), (2.9, 3)])
+def test_a_second_run_comes_before_a_refinement(monkeypatch: pytest.MonkeyPatch, seconds: float, runs: int) -> None:
+    """Check runs of 1 s each, and a refinement of 0.8 s: two runs and a refinement take 2.8 s."""
+    now, beliefs = [0.0], coarse_to_fine.CoarseToFine.beliefs
+
+    def slow(self: coarse_to_fine.CoarseToFine, deadline: Deadline, *, seed: int = 0) -> object:
+        now[0] += 1.0
+        return beliefs(self, NEVER, seed=seed)
+
+    table = generate(12, seed=1)
+    problem = no_unary_evidence(table.description(), table.scene()).problem
+    monkeypatch.setitem(vars(CLOCK), "now", lambda: now[0])
+    monkeypatch.setattr(coarse_to_fine.CoarseToFine, "beliefs", slow)
+    assert len(starts_of(problem.compiled, None, Deadline.after(seconds)).runs) == runs
 
 
 def test_ladders_start_from_runs_in_proportion_to_shares() -> None:
