@@ -108,10 +108,10 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     require("matplotlib", "drawing a picture")
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    from deixis.plots.displayed_figure import DisplayedFigure
+    from deixis.plots.displayed_figure import displayed_figure
 
     room = ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=MARGIN)
-    figure = DisplayedFigure(figsize=(width, height), facecolor=PAPER, layout=room)
+    figure = displayed_figure(figsize=(width, height), facecolor=PAPER, layout=room)
     return figure, figure.subplots(**subplots)
 
 
