@@ -42,7 +42,7 @@ WordClass = Literal[
 
 NOMINAL: frozenset[WordClass] = frozenset({"noun", "adjective"})
 FINITE: frozenset[WordClass] = frozenset({"third", "past", "base"})
-VERBAL: frozenset[WordClass] = FINITE | {"participle", "ing", "modal"}
+VERBAL: frozenset[WordClass] = frozenset({"third", "past", "base", "participle", "ing", "modal"})
 """Classes of words that a noun phrase does not go on with as its noun."""
 
 
