@@ -12,8 +12,6 @@ from deixis.answers import count
 from deixis.deadline import Deadline
 from deixis.grammar.english.chunking.chunk import JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.chunking.chunker import Chunker
-from deixis.grammar.english.chunking.noun_positions import is_known
-from deixis.grammar.english.chunking.possible_verbs import possible_verbs
 from deixis.grammar.english.chunking.shared_heads import with_shared_heads
 from deixis.grammar.english.clauses.assemble import Assembly, Found
 from deixis.grammar.english.clauses.build import Builder
@@ -23,6 +21,8 @@ from deixis.grammar.english.clauses.readings import other_joints, settled
 from deixis.grammar.english.clauses.rewriting.ellipses import with_pairs_apart
 from deixis.grammar.english.clauses.rewriting.rewrite import rewritten
 from deixis.grammar.english.confidence import Guess
+from deixis.grammar.english.tagging.tagger import Tagger, Tagging
+from deixis.grammar.english.tagging.word_classes import is_known
 from deixis.grammar.english.tokens import (
     MAX_SENTENCE_WORDS,
     RawSentence,
@@ -148,20 +148,24 @@ def _place_of_list(
 def _sentence(
     text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...]
 ) -> Sentence:
-    """Parse a sentence in several ways: words that were taken as nouns as verbs, then each joint read otherwise."""
-    best, chunks = _parsed(text, raw, words, nouns, lead, frozenset())
+    """Parse a sentence in several ways: by the second best classes of its words, then each joint read otherwise."""
+    asks = text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?")
+    asks = not without_request(words) and asks
+    tagger = Tagger(words, nouns)
+    tagging = tagger.best()
+    best, chunks = _parsed(text, raw, words, nouns, lead, asks, tagging)
     cost = _cost(best)
     note = best.fragment is not None
     if cost and not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
-        for verbs in possible_verbs(chunks, words, nouns):
-            other, other_chunks = _parsed(text, raw, words, nouns, lead, verbs)
+        for second in tagger.second_best(tagging):
+            other, other_chunks = _parsed(text, raw, words, nouns, lead, asks, second)
             clause = note and other.fragment is None
-            acts = clause and all(_is_only_verb(words[at].norm, nouns) for at in verbs)
+            acts = clause and all(_is_only_verb(words[at].norm, nouns) for at in second.tried)
             if _cost(other) + MIN_GAIN <= cost or (clause and _cost(other) < cost + acts * (1 + MIN_GAIN)):
                 best, chunks, cost = other, other_chunks, _cost(other)
     if not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
         others = (
-            (_parsed(text, raw, words, nouns, lead, frozenset(), joined)[0], in_conjunction)
+            (_parsed(text, raw, words, nouns, lead, asks, tagging, joined)[0], in_conjunction)
             for joined, in_conjunction in other_joints(chunks)
         )
         best = settled(best, (other for other in others if _cost(other[0]) <= cost))
@@ -183,16 +187,15 @@ def _cost(sentence: Sentence) -> int:
 
 def _parsed(
     text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...],
-    verbs: frozenset[int], joined: list[Chunk] | None = None,
+    asks: bool, tagging: Tagging, joined: list[Chunk] | None = None,
 ) -> tuple[Sentence, list[Chunk]]:  # fmt: skip
-    """Parse a sentence whose words at ``verbs`` are verbs, or one with given chunks; return its chunks as well."""
+    """Parse a sentence by the classes of its words, or one with given chunks; return its chunks as well."""
     unknown: list[Misunderstood] = []
     foreign = False
     found_chunks: list[Chunk] = []
     before = notes.set(unknown)
     try:
-        asks = text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?")
-        assembly = Assembly(text, raw, asks=not without_request(words) and asks)
+        assembly = Assembly(text, raw, asks=asks)
         assembly.front = lead
         if not raw.heading and _is_foreign(words):
             foreign = True
@@ -200,7 +203,7 @@ def _parsed(
                 Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
             )
         elif not raw.heading:
-            found_chunks = with_pairs_apart(Chunker(words, nouns, verbs).run()) if joined is None else joined
+            found_chunks = with_pairs_apart(Chunker(words, nouns, tagging).run()) if joined is None else joined
             chunks = rewritten([replace(chunk) for chunk in found_chunks], text)
             assembly.hedges = [
                 (chunk.span[0], chunk.value)

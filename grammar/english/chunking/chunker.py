@@ -10,9 +10,9 @@ from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, Chunk, VerbGroup
 from deixis.grammar.english.chunking.fixed_phrases import FixedPhraseChunker
-from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import PARTICLES
+from deixis.grammar.english.tagging.word_classes import is_known
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import QUALITIES, adjectives, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, NEGATIONS
@@ -154,9 +154,6 @@ class Chunker(FixedPhraseChunker):
         if self.norms[at] == "half" and self.norms[at + 1] in _HALF_STATES | ADVERBS:
             span = self.words[at].start, self.words[at + 1].end
             return Chunk("ADJP", at, at + 2, (Adjective(f"half {self.norms[at + 1]}", "state", Degree.PLAIN, span),))
-        self.nouns.is_object = self._previous() == "PUT" or (
-            self._previous() == "TVERB" and self.chunks[-1].value.lemma in ("hold", "contain", "have", "keep")
-        )
         found = self.nouns.phrase(at, self._previous())
         if found is None:
             return None

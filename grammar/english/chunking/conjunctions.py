@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
-from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
+from deixis.grammar.english.tagging.word_classes import is_known
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import EMPTY, is_adjective
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, IS_FORMS, MODALS, NEGATIONS, PRONOUNS

@@ -474,6 +474,8 @@ class FixedPhraseChunker(JointChunker):
         i = at - 1
         while i > 0 and (self.norms[i] in ADVERBS or self.norms[i] in HEDGES):
             i -= 1
+        if self.norms[i - 1] == "no":
+            return False  # 'there is no need to put it there'
         if self.norms[i] in _GOVERNORS or (self.norms[i] == "sense" and self.norms[i - 1] in _SENSIBLE):
             return True
         first = next((k for k in range(len(self.chunks) - 1, -1, -1) if self.chunks[k].type in JOINT_TYPES), -1)

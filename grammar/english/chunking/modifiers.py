@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.noun_positions import ED_NOUNS, NOUN_OR_PREPOSITION, NounFinder
+from deixis.grammar.english.chunking.noun_positions import NounFinder
+from deixis.grammar.english.tagging.word_classes import ED_NOUNS, NOUN_OR_PREPOSITION
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.adjectives import COLOUR_SHADES, degree_of, is_adjective, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, NUMBERS, ORDINALS

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.modifiers import ModifierFinder
-from deixis.grammar.english.chunking.noun_positions import GENERIC_NOUNS, NOUN_OR_PREPOSITION
+from deixis.grammar.english.chunking.noun_positions import GENERIC_NOUNS
+from deixis.grammar.english.tagging.word_classes import NOUN_OR_PREPOSITION
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import (
@@ -125,7 +126,7 @@ class NounChunker(ModifierFinder):
             determiner, i = determiner, i + 1
             if norms[i] == "own":
                 i += 1
-        number = self.number(i)
+        number = None if self._is_pair(i) else self.number(i)
         if number is not None and number == int(number) and not (norms[i] == "one" and not self._counts_one(i + 1)):
             count, i = int(number), i + 1
             if norms[i] == "o'clock":
@@ -145,6 +146,10 @@ class NounChunker(ModifierFinder):
         if phrase is not None and measured and not self._nouns.singular(norms[end - 1])[1]:
             phrase = replace(phrase, count=None, plural=False)  # 'a five piece drum set', but 'a dozen eggs'
         return end, phrase, modifiers
+
+    def _is_pair(self, at: int) -> bool:
+        """Return True for *couple*, *pair* and *dozen* as nouns: *behind the couple hangs a curtain*."""
+        return at < len(self.words) and self.classes[at] == "noun" and self.norms[at + 1] != "of"
 
     def _counts_one(self, at: int) -> bool:
         """Return True if *one* is a number here: *one saucer*, and not *the one near the door*."""

@@ -7,7 +7,8 @@ from functools import cache
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.chunking.noun_phrases import NounChunker
-from deixis.grammar.english.chunking.noun_positions import is_known
+from deixis.grammar.english.tagging.tagger import Tagging
+from deixis.grammar.english.tagging.word_classes import is_known
 from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.function_words import (
@@ -81,11 +82,11 @@ def _ATTACHED_UNIT(norm: str) -> float | None:  # noqa: N802
 class RelatorChunker:
     """Finder of prepositions, place words and lengths, beside the chunks that were found so far."""
 
-    def __init__(self, words: list[Word], nouns: KnownNouns, verbs: frozenset[int] = frozenset()) -> None:
+    def __init__(self, words: list[Word], nouns: KnownNouns, tagging: Tagging) -> None:
         self.words = words
         self.norms = [word.norm for word in words] + [""] * 12
-        self.nouns = NounChunker(words, self.norms, nouns)
-        self.nouns.verbs = verbs
+        self.nouns = NounChunker(words, self.norms, nouns, tagging.classes)
+        self._tried_verbs = tagging.tried
         self.chunks: list[Chunk] = []
         self._denied: str | None = None  # modal of a denial that stands before its subject
         self._denied_be: VerbGroup | None = None  # 'by no means is the cup …': *is* goes after the subject

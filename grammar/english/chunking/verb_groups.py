@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import COMMANDS, FINITE, JOINT_TYPES, Chunk, VerbGroup
-from deixis.grammar.english.chunking.noun_positions import is_known
 from deixis.grammar.english.chunking.relators import CLAUSE_ENDS, NOUNS_TOO, RelatorChunker
+from deixis.grammar.english.tagging.word_classes import is_known
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, IS_FORMS, MODALS, NEGATIONS, PRONOUNS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
@@ -223,7 +223,7 @@ class VerbChunker(RelatorChunker):
         norm = self.norms[i]
         form = self._verbs.get(norm)
         helped = i > first
-        if i in self.nouns.verbs and (tried := self._tried(at, i, group)) is not None:
+        if i in self._tried_verbs and (tried := self._tried(at, i, group)) is not None:
             return tried
         reporting = self.norms[i + 1] == "that" or (norm in SAYING and self.norms[i + 1] in _TOLD)
         if norm in REPORTS | SAYING and reporting and self._previous() == "NP":
@@ -276,7 +276,7 @@ class VerbChunker(RelatorChunker):
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
             if i == at and self._goes_on_with(at):
                 return Chunk("TVERB", at, i + 1, _with(group, norm, "unknown", "s"))
-            if self._previous() == "NP" and i == at and self.nouns.ends_as_verb(at):
+            if self._previous() == "NP" and i == at and self.nouns.is_verb(at):
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
             return self._unknown_participle(at, i, group)
         lays = norm == "lay" and group.modal is not None  # 'you may lay it there'
@@ -435,7 +435,7 @@ class VerbChunker(RelatorChunker):
             if imperative and not subject_is_you and norm in _GOING and self._goes(end):
                 end += self.norms[end] in ("back", "away", "aside", "here")
                 return Chunk("GO", at, end, found)
-            if imperative and not subject_is_you and norm in NAMED_LIKE_THINGS and not self.nouns.commands(i):
+            if imperative and not subject_is_you and norm in NAMED_LIKE_THINGS and self.nouns.is_noun(i):
                 return None
             if imperative and self._inverted_in_statement(i, end):
                 return Chunk("VERB", at, end, found)  # 'it is on the left, and behind it stand the lilies'

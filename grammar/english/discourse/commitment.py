@@ -118,7 +118,7 @@ UNREAL = re.compile(
     r"|\b(?:i|we)(?:['\u2019](?:m|re|ve\s+been)|\s+(?:am|are|was|were|have\s+been))\s+(?:told|informed|assured|given\s+to)\b"
     r"|\b(?:wants|wanted)\s+(?:the|an?|my|his|her|our|their|it|them)\b|\bover\s+(?:my|his|her|our)\s+dead\s+body\b"
     r"|\b(?:supposedly|allegedly|reportedly|purportedly|ostensibly|theoretically|hypothetically)\b"
-    r"|^\s*picture\s+this\b|\bis\s+(?:an?\s+)?(?:accident\s+waiting|bad\s+luck|good\s+luck|recipe\s+for|(?:fire\s+)?hazard|"
+    r"|^\s*picture\s+this\b|\btry\s+to\s+(?:picture|imagine|visuali[sz]e)\b|\bis\s+(?:an?\s+)?(?:accident\s+waiting|bad\s+luck|good\s+luck|recipe\s+for|(?:fire\s+)?hazard|"
     r"crime|sin|joke|figment|fantasy|fiction|lie|illusion|dream)\b"
     r"|\binsist(?:s|ed)?\s+(?:up)?on\b|\byou['\u2019]ll\s+be\s+(?:telling|saying)\b|\bis\s+the\s+least\b"
     r"|\bthe\s+(?:author|painter|artist|playwright|novelist|poet|director|engraver)\s+(?:has|had|puts|places|shows)\b"
@@ -219,10 +219,10 @@ LIMITED = re.compile(
     r"\bonly\s+(?:on|in|at|during|when|for)\s+[^,.;]*|\bon\s+(?:mon|tues|wednes|thurs|fri|satur|sun)days\b"
     r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b"
     r"|\b(?:most|some|many|other)\s+(?:days|nights|mornings|evenings|weekends|weeks|years|times)\b"
-    r"|\bin\s+(?:\w+\s+)?weather\b|\bin\s+(?:the\s+)?(?:rain|snow)\b",
+    r"|\bin\s+(?:\w+\s+)?weather\b|\bin\s+(?:the\s+)?(?:rain|snow)\b|\bexcepted\b",
     re.IGNORECASE,
 )
-"""Time outside which a statement need not hold."""
+"""Time outside which a statement need not hold, or a word that leaves things out of it."""
 UNTIL = re.compile(r"(?<=\w\s)(?:before|until|till)\s+[^,.;]+", re.IGNORECASE)
 """Time up to which a denial holds: *do not put the cup there before dessert*."""
 EVENT = re.compile(

@@ -695,7 +695,7 @@ def _names_any(phrase: NounPhrase) -> bool:
 
 def _is_choice(phrase: NounPhrase) -> bool:
     """Return True for *a cup or a mug*, of which one is meant, but not for *plates or bowls*, which are both."""
-    kinds = all(member.plural and member.determiner is None for member in phrase.members)
+    kinds = any(member.plural and member.determiner is None for member in phrase.members)
     return phrase.joined_by == "or" and not kinds
 
 

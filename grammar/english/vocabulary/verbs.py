@@ -228,7 +228,7 @@ def verb_forms() -> dict[str, VerbForm]:
             lemma = parts[0]
             forms: dict[str, str] = dict(zip(("s", "past", "participle", "ing"), parts[1:], strict=False))
             for form, regular in (("base", lemma), *_regular(lemma).items()):
-                if lemma in _ONLY_PARTICIPLES and form in ("base", "s"):
+                if lemma in NOUNS_BEFORE_VERBS and form in ("base", "s"):
                     continue
                 word = forms.get(form, regular) if form != "base" else lemma
                 found.setdefault(word, VerbForm(lemma, kind, form))
@@ -237,7 +237,7 @@ def verb_forms() -> dict[str, VerbForm]:
     return found
 
 
-_ONLY_PARTICIPLES = word_set(
+NOUNS_BEFORE_VERBS = word_set(
     "draw sink wind drive sling snap loop bundle dump paste plaster stencil deposit clip clamp ring tower string"
     " range coil slip lower fill stow plant heap spoon load"
     " thread pack feed scoop dot ladle stretch swing"
