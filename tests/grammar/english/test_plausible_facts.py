@@ -256,6 +256,8 @@ def test_postures_and_persons(text: str, expected: list[str]) -> None:
         ("Sofas should not be touching walls - particularly in large rooms.", ["not touching(sofas, walls)"]),
         ("The bass drum is behind the jug. The cymbals are around the drums.",
          ["behind(bass_drum, jug)", "around(cymbals, drums)"]),
+        ("Top right, we put the bone, which stands for the lamb.", ["part(bone, 'top right')"]),
+        ("Bottom left goes the jug.", ["part(jug, 'bottom left')"]),
         ("The clamp is near the assembly inside the crate.", ["inside(assembly, crate)", "near(clamp, assembly)"]),
     ],
 )  # fmt: skip

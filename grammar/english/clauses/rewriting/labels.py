@@ -116,6 +116,23 @@ def _with_place_labels(chunks: list[Chunk]) -> list[Chunk]:
     return [put_in("PREP", chunks[0], relator), *chunks[:colon], comma, *chunks[colon + 1 :]]
 
 
+def _with_bare_places_first(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with a preposition before a bare place that a command or a verb follows.
+
+    *Top right, put the bone, which …* is read as *at the top right, put the bone, which …*.
+    """
+    first = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    follows = first + 1 + (type_at(chunks, first + 1) == "COMMA")
+    commanded = type_at(chunks, follows) == "PUT" and follows > first + 1
+    inverted = type_at(chunks, follows) == "VERB" and type_at(chunks, follows + 1) == "NP" and follows == first + 1
+    if type_at(chunks, first) != "NP" or not (commanded or inverted):
+        return chunks
+    place = chunks[first].value
+    if not is_place(place) or place.determiner is not None or place.plural or not place.adjectives:
+        return chunks
+    return [*chunks[:first], put_in("PREP", chunks[first], Relator(Preposition("at", "at"))), *chunks[first:]]
+
+
 def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
     """Return the chunks with a preposition before a bare place of a note: *plate centre*, *lamp: far left corner*."""
     at = Relator(Preposition("at", "at"))
@@ -214,6 +231,6 @@ def _with_label_nouns(chunks: list[Chunk]) -> list[Chunk]:
 
 REWRITES = (
     without(_side_up), _with_counted_labels, _with_labels_of_definitions, _with_labels_of_commands, without(_turn),
-    _with_label_nouns, _with_place_labels, _with_telegraphic_places, _with_named_places, _with_labels_apart,
+    _with_label_nouns, _with_place_labels, _with_bare_places_first, _with_telegraphic_places, _with_named_places, _with_labels_apart,
 )  # fmt: skip
 """Rewritings of labels, in their order."""
