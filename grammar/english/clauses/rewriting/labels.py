@@ -231,6 +231,7 @@ def _with_label_nouns(chunks: list[Chunk]) -> list[Chunk]:
 
 REWRITES = (
     without(_side_up), _with_counted_labels, _with_labels_of_definitions, _with_labels_of_commands, without(_turn),
-    _with_label_nouns, _with_place_labels, _with_bare_places_first, _with_telegraphic_places, _with_named_places, _with_labels_apart,
+    _with_label_nouns, _with_place_labels, _with_bare_places_first, _with_telegraphic_places, _with_named_places,
+    _with_labels_apart,
 )  # fmt: skip
 """Rewritings of labels, in their order."""
