@@ -258,6 +258,8 @@ def test_postures_and_persons(text: str, expected: list[str]) -> None:
          ["behind(bass_drum, jug)", "around(cymbals, drums)"]),
         ("Top right, we put the bone, which stands for the lamb.", ["part(bone, 'top right')"]),
         ("Bottom left goes the jug.", ["part(jug, 'bottom left')"]),
+        ("Put the pen on the red mat, either beside the cup or behind the jug.",
+         ["on(pen, mat)", "next_to(pen, cup)", "behind(pen, jug)"]),
         ("The clamp is near the assembly inside the crate.", ["inside(assembly, crate)", "near(clamp, assembly)"]),
     ],
 )  # fmt: skip
@@ -298,6 +300,13 @@ def test_what_is_probably_wrong_is_a_message_only() -> None:
     reading = read("The jug is behind the cup. The cup is placed along with a spoon above eye level.")
     assert [str(f.content) for f in reading.stated] == ["behind(jug, cup)"]
     assert any("not the name of a thing" in problem.message for problem in reading.sentences[1].problems)
+
+
+def test_a_place_before_either_is_not_an_option() -> None:
+    reading = read("The pen is on the red mat, either beside the cup or behind the jug.")
+    assert [(str(f.content), f.alternative) for f in reading.stated if not str(f.content).startswith("colour")] == [
+        ("on(pen, mat)", None), ("next_to(pen, cup)", 1), ("behind(pen, jug)", 1),
+    ]  # fmt: skip
 
 
 def test_options_of_a_choice_are_not_denied() -> None:

@@ -7,7 +7,15 @@ from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.places import is_place
-from deixis.grammar.english.clauses.rewriting.editing import ENDS, Run, leave_out, put_in, type_at, without
+from deixis.grammar.english.clauses.rewriting.editing import (
+    ENDS,
+    Run,
+    apart,
+    leave_out,
+    put_in,
+    type_at,
+    without,
+)
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.nouns import (
     AIMED_PARTS,
@@ -316,8 +324,31 @@ def _with_owners_of_places(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_options_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *it is on the tray, either beside A or behind B* as *it is on the tray; it is beside A or behind B*."""
+    at = next((i for i, chunk in enumerate(chunks) if chunk.type == "ADVERB" and chunk.value == "either"), 0)
+    if at < 2 or chunks[at - 1].type != "COMMA" or type_at(chunks, at + 1) not in ("PREP", "ADV"):
+        return chunks
+    end = next((k for k in range(at, len(chunks)) if chunks[k].type in JOINT_TYPES - {"OR"}), len(chunks))
+    first = max((k + 1 for k in range(at - 1) if chunks[k].type in JOINT_TYPES), default=0)
+    before = [chunk for chunk in chunks[first : at - 1] if chunk.type != "ADVERB"]
+    types = [chunk.type for chunk in before]
+    is_placed = types[-2:] == ["PREP", "NP"] or types[-4:] == ["PREP", "NP", "OF", "NP"]
+    if not is_placed or "OR" not in [chunk.type for chunk in chunks[at:end]]:
+        return chunks
+    if types[:2] == ["PUT", "NP"]:
+        thing, verb = before[1], Chunk("BE", at, at, VerbGroup("be", "be", "finite"), chunks[at].span)
+    elif types[:2] in (["NP", "BE"], ["NP", "VERB"]):
+        thing, verb = before[0], before[1]
+        verb = Chunk("BE", at, at, replace(verb.value, lemma="be", kind="be", form="finite"), chunks[at].span)
+    else:
+        return chunks
+    cut, *again = apart([thing], [verb, *chunks[at + 1 : end]], chunks[at - 1].span)
+    return [*chunks[: at - 1], cut, *again, *chunks[end:]]
+
+
 REWRITES = (
-    _with_owners_of_places, _with_purposes_of_places, _with_measures_denied, _with_destinations,
+    _with_options_apart, _with_owners_of_places, _with_purposes_of_places, _with_measures_denied, _with_destinations,
     without(_place_taken), _with_gaps, _with_aimed_parts, _with_shared_objects,
     _with_aims_of_subjects, _with_places_of_nearest,
 )  # fmt: skip
