@@ -75,6 +75,17 @@ _FORGET = re.compile(
 )
 """Sentence that takes back what a person taught: *forget what Ada said*."""
 
+_COURTESIES = tuple(
+    (re.compile(rf"\W*(?:{words})(?:,? (?:there|robot|so much|very much|a lot|again))*\W*", re.IGNORECASE), reply)
+    for words, reply in (
+        ("hello|hi|hey|good (?:morning|afternoon|evening|day)", "Hello."),
+        ("thank you|thanks|many thanks|cheers", "You are welcome."),
+        ("goodbye|bye|bye bye|see you|good night", "Goodbye."),
+        ("ok|okay|all right|great|fine|good|well done|very good|perfect|i see", ""),
+    )
+)
+"""What people say out of courtesy or to agree, and what the robot replies; it says nothing where the reply is empty."""
+
 MAX_UNSEEN = 20
 """Maximum number of names that wait until their things have been looked at."""
 
@@ -265,6 +276,11 @@ class Learner(Module):
 
     def _heard(self, text: str, fluent: EpisodicFluent, board: Board) -> None:
         by, at = fluent.source.by, fluent.start.lower
+        courtesy = next((reply for words, reply in _COURTESIES if words.fullmatch(text)), None)
+        if courtesy is not None:
+            if courtesy:
+                self._say(courtesy, at, board)
+            return
         names = named(text)[1] is not None or announced_thing(text) is not None
         answers = re.match(r"\s*(it|call)\b", text, re.IGNORECASE) is not None or not names
         if self._named is not None and answers and self._learned_name(text, by, at, board, fluent.source.event):

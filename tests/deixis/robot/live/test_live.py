@@ -51,6 +51,8 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
     story = StorySettings("simulator", str(folder / "pair.layout"), seed=2, rate=0.5, words=words)
     with live_robot(folder / "memory", story, lines.append, processes=request.param) as robot:
         assert robot.wait(120.0)
+        robot.says("Hello there!")
+        robot.says("OK.")
         robot.says("what did the teacher say?")
         robot.says("which one did the teacher show you first")
         robot.says("Eve moved the plate.")
@@ -58,6 +60,7 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         robot.says("t3 is a bowl.")
         robot.says("t3 is a cup.")
         robot.says("t99 is a bowl.")
+        robot.says("Thank you very much.")
         assert robot.answered(60.0)
         steps: list[tuple[int, int]] = []
         write_story(robot, folder / "pictures", lambda *step: steps.append(step))
@@ -96,6 +99,11 @@ def test_what_a_person_taught_is_forgotten_on_request(ran: Ran) -> None:
     with Session(ran.memory) as session:
         assert "teacher" in session.recall("what did the teacher say?").answer
         assert not session.recall("what did user say?").known
+
+
+def test_greetings_and_thanks_get_a_reply(ran: Ran) -> None:
+    assert heard(ran, "robot: Hello.") and heard(ran, "robot: You are welcome.")
+    assert not any("I did not understand" in line for line in ran.lines)
 
 
 def test_told_acts_are_noted_and_recalled(ran: Ran) -> None:
