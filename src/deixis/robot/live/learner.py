@@ -84,7 +84,7 @@ _COURTESIES = tuple(
         ("ok|okay|all right|great|fine|good|well done|very good|perfect|i see", ""),
     )
 )
-"""What people say out of courtesy or to agree, and what the robot replies; it says nothing where the reply is empty."""
+"""Courtesies and words of agreement, each with the reply of the robot; it says nothing where the reply is empty."""
 
 MAX_UNSEEN = 20
 """Maximum number of names that wait until their things have been looked at."""
