@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from deixis.deadline import Deadline
@@ -13,6 +13,7 @@ from deixis.grammar.english.discourse.drafts import Draft as FactDraft
 from deixis.grammar.english.discourse.entities import Entity, Role, names_of
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.telling.paraphrase import paraphrase
+from deixis.grammar.english.telling.wording import listed
 from deixis.grammar.english.tree import Clause, Misunderstood, Mood, Sentence
 from deixis.grammar.english.vocabulary.known_nouns import known_nouns
 from deixis.grammar.errors import Diagnostic, ScriptError
@@ -123,12 +124,24 @@ class _Writer:
         shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in written]
         self.names = names_of([e for e in shown if e in stated])
         self.names_in_hints = {**names_of(shown), **self.names}
+        self.proper = {  # names of figures and persons, as they are written
+            name: mention
+            for entity, name in self.names_in_hints.items()
+            for mention in entity.mentions
+            if mention[:1].isupper()
+            and mention.casefold().replace(" ", "_") == name.casefold()
+            and not discourse.nouns.knows(name)
+        }
         self.declared: set[tuple[str, str]] = set()  # names with a declared kind or colour, and which of the two
 
     def source(self, span: tuple[int, int]) -> Source:
         """Return the lines and columns of a span of characters."""
         start, end = (bisect_right(self.starts, at) - 1 for at in span)
         return Source(self.file, start + 1, span[0] - self.starts[start] + 1, end + 1, span[1] - self.starts[end] + 1)
+
+    def name(self, names: Sequence[str]) -> str:
+        """Return names with *the*, and those of figures and persons as they are written."""
+        return listed([self.proper.get(name, f"the {name.replace('_', ' ')}") for name in names])
 
     def mentions(self) -> dict[str, tuple[str, ...]]:
         """Return the words used for each object, by its name."""
@@ -213,6 +226,7 @@ class _Writer:
             paraphrase=paraphrase(
                 [fact for fact in facts if fact.confidence >= MIN_STATED],
                 surface.noun if surface is not None else "table",
+                self.name,
             ),
             understood=sentence.understood,
             words=sentence.words,
@@ -227,7 +241,7 @@ class _Writer:
         surface = self.discourse.references.surface
         content = replace(doubted.content, weight=1.0, optional=False)
         plain = replace(doubted, content=content, uncertain=False, past=False, condition=None, alternative=None)
-        return paraphrase([plain], surface.noun if surface is not None else "table")
+        return paraphrase([plain], surface.noun if surface is not None else "table", self.name)
 
     def _problem(self, span: tuple[int, int], reason: str, suggestion: str | None) -> Diagnostic:
         source = self.source(span)

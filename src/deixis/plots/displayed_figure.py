@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import io
-from typing import Any
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PNG_DPI = 110
 """Resolution of pictures as PNG, in dots per inch."""
 
 
-class _DisplayedFigure(Figure):
-    """A figure that a notebook shows as the value of a cell; it shows others only if pyplot made them."""
+@cache
+def _figure_class() -> type[Figure]:
+    """Return the class of figures that a notebook shows as the value of a cell; it shows others only from pyplot."""
+    from matplotlib.figure import Figure
 
-    def _repr_png_(self) -> bytes:
-        return png_of(self)
+    class DisplayedFigure(Figure):
+        def _repr_png_(self) -> bytes:
+            return png_of(self)
+
+    return DisplayedFigure
 
 
 def displayed_figure(**options: Any) -> Figure:
@@ -38,7 +44,9 @@ def displayed_figure(**options: Any) -> Figure:
     >>> png_of(figure) == figure._repr_png_()
     True
     """
-    figure = _DisplayedFigure(**options)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure = _figure_class()(**options)
     FigureCanvasAgg(figure)
     return figure
 

@@ -314,3 +314,8 @@ def test_options_of_a_choice_are_not_denied() -> None:
     assert [(str(fact), fact.weight) for fact in script.facts] == [
         ("left(fork, plate)", 0.5), ("left(fork, bowl)", 0.5), ("left(fork, cup)", 0.5),
     ]  # fmt: skip
+
+
+def test_names_of_figures_stand_without_an_article() -> None:
+    first, second = read("Mary is left of the manger. A is behind the plate.").sentences
+    assert (first.paraphrase, second.paraphrase) == ("Mary is left of the manger.", "A is behind the plate.")

@@ -116,15 +116,16 @@ class RecordedBoxes:
         Returns
         -------
         RelatedPlace or None
-            What the thing is in or on, else where it is from the landmark that stayed longest, and of these the one
-            whose word fits best; None if no word fits.
+            What the thing is in or on, else where it is from the landmark that stayed longest, of these the one whose
+            word fits best (to one decimal), and of these the nearest; None if no word fits.
         """
         own = self._index(fluent)
         if own is None:
             return None
         box = self._fluents[own]
         at = max(min(at, box.finish.upper - MIN_DURATION), box.start.lower)
-        best: tuple[float, float, int, str] | None = None
+        best: tuple[tuple[float, float, float], int, str] | None = None
+        centres = self._boxes.mean(axis=1)
         for other in range(len(self._fluents)):
             if self._may_be_landmark(own, other, landmarks):
                 start, finish = self._both(own, other)
@@ -134,9 +135,10 @@ class RecordedBoxes:
                 for word in (*SUPPORT, *DIRECTIONS):
                     degree = float(self._degree(word)[own, other]) * (COARSE if word == "near" else 1.0)
                     lasting = np.inf if word in SUPPORT and degree >= MIN_SUPPORT_DEGREE else duration
-                    if degree >= MIN_DEGREE and (best is None or (lasting, degree) > best[:2]):
-                        best = lasting, degree, other, word
-        return None if best is None else self._place(own, best[2], best[3])
+                    fits = lasting, round(degree, 1), -float(np.linalg.norm(centres[own] - centres[other]))
+                    if degree >= MIN_DEGREE and (best is None or fits > best[0]):
+                        best = fits, other, word
+        return None if best is None else self._place(own, best[1], best[2])
 
     def _may_be_landmark(self, own: int, other: int, among: frozenset[str] | None) -> bool:
         """Return whether another box is that of another thing, one of some, and holds at the same time."""
