@@ -665,6 +665,13 @@ class Assembly:
         group = verb.group
         phrase = None if subject is None else subject.phrase
         predicates = [p for part in front for p in part.predicates]
+        if not group.positive and shape not in ("question", "existential"):
+            own = [p for part in verb.predications for p in part.predicates]
+            if not own:  # 'on the left, do not put the cup'
+                predicates = [replace(p, positive=not p.positive) for p in predicates]
+                self.front = tuple(replace(p, positive=not p.positive) for p in self.front)
+            elif any(p.arguments or p.relation in _PLACES for p in own):
+                predicates, self.front = [], ()  # 'on the left, it must not stand on the mat' denies the mat alone
         if subject is not None:
             predicates += subject.extra
         if (

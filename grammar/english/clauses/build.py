@@ -530,7 +530,7 @@ class Builder(Transformer[Any, Built]):
             rest = tuple(p for p in noun.phrase.predicates if p is not hour)
             noun = Noun(replace(noun.phrase, predicates=rest), extra)
             extra = (*extra, replace(hour, arguments=(noun.phrase,)))
-        if relation == "material" and (noun.phrase.members or noun.phrase.determiner in ("a", "an", "the")):
+        if relation == "material" and (noun.phrase.members or noun.phrase.determiner in ("a", "an", "the", "no")):
             misunderstood(span, "this says which things belong together, not where they are")
             return extra  # 'a set consisting of a fork and a knife'
         if relation == "material":

@@ -319,3 +319,32 @@ def test_options_of_a_choice_are_not_denied() -> None:
 def test_names_of_figures_stand_without_an_article() -> None:
     first, second = read("Mary is left of the manger. A is behind the plate.").sentences
     assert (first.paraphrase, second.paraphrase) == ("Mary is left of the manger.", "A is behind the plate.")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("On the left, the cup must not stand.", ["not part(cup, 'left')"]),
+        ("Behind the plate, the cup is not placed.", ["not behind(cup, plate)"]),
+        ("To the left of the plate, never place the fork.", ["not left(fork, plate)"]),
+        ("In the box, do not keep the pens.", ["not inside(pens, box)"]),
+        ("Top right, never put the cup.", ["not part(cup, 'top right')"]),
+        ("On the left, you should not place the cup.", ["not part(cup, 'left')"]),
+        ("On the left, the cup must not stand on the mat.", ["not on(cup, mat)"]),
+        ("On the red mat, the cup is not open.", ["on(cup, mat)", "not open(cup)"]),
+    ],
+)
+def test_a_denial_denies_the_place_before_it(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "There is no place for the fork left of the plate. The cup is behind the jug.",
+        "Is the proper place for the fork left of the plate? The cup is behind the jug.",
+        "If you have guests, top right goes the fork. The cup is behind the jug.",
+    ],
+)
+def test_places_missing_or_asked_for_give_no_facts(text: str) -> None:
+    assert asserted(text) == ["behind(cup, jug)"]

@@ -336,9 +336,9 @@ def _with_options_apart(chunks: list[Chunk]) -> list[Chunk]:
     is_placed = types[-2:] == ["PREP", "NP"] or types[-4:] == ["PREP", "NP", "OF", "NP"]
     if not is_placed or "OR" not in [chunk.type for chunk in chunks[at:end]]:
         return chunks
-    if types[:2] == ["PUT", "NP"]:
+    if types[:2] == ["PUT", "NP"] and before[0].value.positive:
         thing, verb = before[1], Chunk("BE", at, at, VerbGroup("be", "be", "finite"), chunks[at].span)
-    elif types[:2] in (["NP", "BE"], ["NP", "VERB"]):
+    elif types[:2] in (["NP", "BE"], ["NP", "VERB"]) and before[1].value.positive:
         thing, verb = before[0], before[1]
         verb = Chunk("BE", at, at, replace(verb.value, lemma="be", kind="be", form="finite"), chunks[at].span)
     else:
