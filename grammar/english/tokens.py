@@ -97,7 +97,8 @@ _DENIALS = {
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
-    ("nowhere", "near", "being"): "not", ("'d", "better"): "should", ("had", "better"): "should",
+    ("nowhere", "near", "being"): "not", ("nowhere", "to", "be"): "not",
+    ("'d", "better"): "should", ("had", "better"): "should",
 }  # fmt: skip
 """Phrases that deny what follows them, advise it or say how it became, with the words that say the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})

@@ -665,19 +665,11 @@ class Assembly:
         group = verb.group
         phrase = None if subject is None else subject.phrase
         predicates = [p for part in front for p in part.predicates]
-        if not group.positive and shape not in ("question", "existential"):
-            own = [p for part in verb.predications for p in part.predicates]
-            if not own:  # 'on the left, do not put the cup'
-                predicates = [replace(p, positive=not p.positive) for p in predicates]
-                self.front = tuple(replace(p, positive=not p.positive) for p in self.front)
-            elif any(p.arguments or p.relation in _PLACES for p in own):
-                predicates, self.front = [], ()  # 'on the left, it must not stand on the mat' denies the mat alone
-        if subject is not None:
-            predicates += subject.extra
+        extra = [] if subject is None else [*subject.extra]
         if (
             shape in ("question", "existential", "verbless", "inverted")
             and phrase is not None
-            and not predicates
+            and not (predicates or extra)
             and not verb.predications
         ):
             predicates, phrase = [*phrase.predicates], replace(phrase, predicates=())
@@ -691,6 +683,14 @@ class Assembly:
             plain = replace(phrase, determiner="the" if phrase.head else None, count=count, plural=True)
             phrase, group = plain, replace(group, positive=not group.positive)
             verb = replace(verb, group=group)
+        if not group.positive and shape not in ("question", "existential"):
+            own = [p for part in verb.predications for p in part.predicates if p.relation != "there"]
+            if not own:  # 'on the left, do not put the cup'
+                predicates = [replace(p, positive=not p.positive) for p in predicates]
+                self.front = tuple(replace(p, positive=not p.positive) for p in self.front)
+            elif any(p.arguments or p.relation in _PLACES for p in own):
+                predicates, self.front = [], ()  # 'on the left, it must not stand on the mat' denies the mat alone
+        predicates += extra
         fronted = [p for p in (*predicates, *(q for part in verb.predications for q in part.predicates)) if p.arguments]
         if phrase is not None and fronted and shape in ("existential", "inverted", "verbless"):
             near = fronted[-1].arguments  # 'in front of the jug there is a cup, 15 cm away'

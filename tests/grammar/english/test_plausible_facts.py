@@ -331,6 +331,7 @@ def test_names_of_figures_stand_without_an_article() -> None:
         ("Top right, never put the cup.", ["not part(cup, 'top right')"]),
         ("On the left, you should not place the cup.", ["not part(cup, 'left')"]),
         ("On the left, the cup must not stand on the mat.", ["not on(cup, mat)"]),
+        ("Behind the jug, neither the cup nor the pen belongs.", ["not behind(cup, jug)", "not behind(pen, jug)"]),
         ("On the red mat, the cup is not open.", ["on(cup, mat)", "not open(cup)"]),
     ],
 )
