@@ -12,7 +12,8 @@ from deixis.grammar.english.vocabulary.verbs import SAYING
 
 PAST_RELATIVE = re.compile(
     r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b"
-    r"|\bwhich\s+(?:(?:the|an?|my|his|her|our|their)\s+)?(?:[\w'\u2019-]+\s+){0,3}?(?:stood|hung|lay|sat)\b"
+    r"|\b(?:formerly|previously|originally|once)\s+(?:on|in|at|under|behind|next|left|right|beside|near|above|below|inside)\b"
+    r"|\b(?:which|that)\s+(?:(?:the|an?|my|his|her|our|their)\s+)?(?:[\w'\u2019-]+\s+){0,3}?(?:stood|hung|lay|sat)\b"
     r"|\b(?:which|that|who)\s+for\s+(?:[\w'\u2019-]+\s+){0,3}?(?:years?|months?|weeks?|decades?|centuries|generations?)\b"
     r"|\b(?:which|that|who|where)\s+(?:[\w'\u2019-]+\s+){0,3}?once\s+\w+",
     re.IGNORECASE,

@@ -149,7 +149,7 @@ class Relations(Mentions):
         relation = predicate.relation
         if "exactly" in predicate.adverbs and relation in EXACT:
             relation = f"exactly_{relation}"
-        if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
+        if relation in ("touching", "on", "inside") and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
         single = subject.size == 1 and not subject.plural
         if relation == "each_side" and single and self.how.optional:

@@ -340,6 +340,18 @@ def test_a_denial_denies_the_place_before_it(text: str, expected: list[str]) -> 
 
 
 @pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The cup that stood on the mat is broken.", []),
+        ("The cup formerly on the mat is red.", []),
+        ("The fork is almost on the mat.", ["near(fork, mat)"]),
+    ],
+)
+def test_what_was_so_or_is_nearly_so_is_not_a_place(text: str, expected: list[str]) -> None:
+    assert [fact for fact in asserted(text) if not fact.startswith("state")] == expected
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "There is no place for the fork left of the plate. The cup is behind the jug.",
