@@ -86,6 +86,11 @@ _MUTUAL = {"next_to": "near", "against": "touching"}
 """Relation of each to the others, by the relation to *each other*."""
 
 
+_PARTS_OF_PAIRS = {
+    ("top", "below"): "bottom", ("bottom", "above"): "top", ("left", "right"): "right", ("right", "left"): "left",
+}  # fmt: skip
+"""Part of the second of two things by the part of the first and the direction of the second."""
+
 _ONE_BY_ONE = {"one behind": "behind", "one in front": "in_front"}
 """Relation of the first of two things to the second by the words for a row."""
 
@@ -594,9 +599,11 @@ class Relations(Mentions):
             before = next(f for f in self.references.recent if f.subject is not subject)
             stated = self.drafts[-1] if self.drafts else None
             level = stated.value if stated is not None and stated.relation == "part" and not stated.arguments else None
-            part = {("top", "below"): "bottom", ("bottom", "above"): "top"}.get((level or "", predicate.relation))
+            part = _PARTS_OF_PAIRS.get((level or "", predicate.relation))
             if part is not None and stated is not None and stated.how.sentence == self.how.sentence:
-                self._add("part", (subject,), (), value=part)  # 'jars up top, and pans below'
+                self._add(
+                    "part", (subject,), (), value=part
+                )  # 'jars up top, and pans below', 'forks left, knives right'
                 return
             opposite = OPPOSITES.get(before.relation or "") == predicate.relation
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:

@@ -332,6 +332,10 @@ def test_names_of_figures_stand_without_an_article() -> None:
         ("On the left, you should not place the cup.", ["not part(cup, 'left')"]),
         ("On the left, the cup must not stand on the mat.", ["not on(cup, mat)"]),
         ("Behind the jug, neither the cup nor the pen belongs.", ["not behind(cup, jug)", "not behind(pen, jug)"]),
+        ("Do not place the fork but the spoon behind the jug.", ["not behind(fork, jug)", "behind(spoon, jug)"]),
+        ("In the middle is not the vase but the jug.", ["not middle(vase)", "middle(jug)"]),
+        ("The jug is behind the cup. On the left: never forks.", ["behind(jug, cup)"]),
+        ("Forks left, knives right.", ["part(forks, 'left')", "part(knives, 'right')"]),
         ("On the red mat, the cup is not open.", ["on(cup, mat)", "not open(cup)"]),
     ],
 )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from deixis.grammar.english.chunking.chunk import FINITE, Chunk
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import (
@@ -215,9 +217,29 @@ def _with_places_of_pairs(chunks: list[Chunk]) -> list[Chunk]:
     return chunks
 
 
+def _with_contrasted_members(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *do not place the fork but the spoon next to it* as a list of which the second member is not denied.
+
+    Also *on the left: never cups* with *no cups*.
+    """
+    found = list(chunks)
+    for i, chunk in enumerate(chunks):
+        types = [type_at(chunks, i + k) for k in range(4)]
+        denied = types[0] in FINITE | {"PUT"} and not chunk.value.positive
+        if denied and types[1:] == ["NP", "BUT", "NP"] and type_at(chunks, i + 4) not in FINITE:
+            joint = chunks[i + 2]
+            found[i + 2] = Chunk("AND", joint.start, joint.end, joint.value, joint.span)
+            found[i + 3] = replace(chunks[i + 3], value=replace(chunks[i + 3].value, negated=True))
+        if types[:3] == ["COLON", "NOT", "NP"] and chunks[i + 2].value.determiner is None:
+            named = chunks[i + 2]
+            found[i + 2] = replace(named, value=replace(named.value, determiner="no"))
+            return [*found[: i + 1], *found[i + 2 :]]
+    return found
+
+
 REWRITES = (
-    _with_accompanied_members, _with_first_of_owned, _with_things_of_several, _with_shared_spots,
-    _with_pronouns_of_lists, without(_bare_superlative), without(_partition), without(_count_apart),
+    _with_contrasted_members, _with_accompanied_members, _with_first_of_owned, _with_things_of_several,
+    _with_shared_spots, _with_pronouns_of_lists, without(_bare_superlative), without(_partition), without(_count_apart),
     _with_places_of_pairs,
 )  # fmt: skip
 """Rewritings of lists, in their order."""
