@@ -707,9 +707,10 @@ class DetectionSettings:
         Minimum number of points of an object, and its minimum length in metres.
     concavity, step
         Angle between two surfaces in radians, and height between them in metres, at which they are two objects.
-    scale, density, plane, viewpoint, top, heights, surface, supervoxels, boundaries, joining, lying, outlines,
-    notes
-        Thresholds of the steps.
+    scale, density, plane, viewpoint, top, heights
+        Thresholds of the steps that find the table.
+    surface, supervoxels, boundaries, joining, lying, outlines, notes
+        Thresholds of the steps that find the objects.
     """
 
     seed: int = 0
