@@ -97,7 +97,7 @@ def test_what_a_person_taught_is_forgotten_on_request(ran: Ran) -> None:
         return
     assert heard(ran, "robot: I have forgotten what user said and showed:")
     with Session(ran.memory) as session:
-        assert "teacher" in session.recall("what did the teacher say?").answer
+        assert "This is a fork" in session.recall("what did the teacher say?").answer
         assert not session.recall("what did user say?").known
 
 
