@@ -28,8 +28,11 @@ if TYPE_CHECKING:
     from deixis.reasoning.geometry.rectangle import SceneRelations
     from deixis.reasoning.grounding.reference.features.room import Room
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
-"""Accepted units with their lengths in metres; pixels stay pixels."""
+UNITS_OF_LENGTH = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+"""Units of length, in metres."""
+
+UNITS = {**UNITS_OF_LENGTH, "px": 1.0}
+"""Accepted units of a scene with their lengths in metres; pixels stay pixels."""
 
 UNNAMED = "<scene>"
 """Name in messages of a scene without a file."""

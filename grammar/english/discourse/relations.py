@@ -301,15 +301,11 @@ class Relations(Mentions):
                     value=predicate.part or (predicate.value.word if predicate.value is not None else None),
                 )
             return
+        written = self.text[slice(*predicate.span)].casefold()
+        on_a_side = relation in _LATERAL and not predicate.reversed and _ON_A_SIDE.search(written) is not None
+        on_a_side = on_a_side and subject.role is not Role.SURFACE and last_word(subject.noun) not in FURNITURE
         for other in entities:
-            written = self.text[slice(*predicate.span)].casefold()
-            on_it = other.role is Role.SURFACE and subject.role is not Role.SURFACE and not predicate.reversed
-            if (
-                on_it
-                and relation in _LATERAL
-                and _ON_A_SIDE.search(written)
-                and last_word(subject.noun) not in FURNITURE
-            ):
+            if on_a_side and other.role is Role.SURFACE:
                 self._add("part", (subject,), (), value=relation)  # 'on the left side of the tray'
             else:
                 self._pair(subject, relation, other, predicate.reversed)
@@ -601,9 +597,7 @@ class Relations(Mentions):
             level = stated.value if stated is not None and stated.relation == "part" and not stated.arguments else None
             part = _PARTS_OF_PAIRS.get((level or "", predicate.relation))
             if part is not None and stated is not None and stated.how.sentence == self.how.sentence:
-                self._add(
-                    "part", (subject,), (), value=part
-                )  # 'jars up top, and pans below', 'forks left, knives right'
+                self._add("part", (subject,), (), value=part)  # 'forks left, knives right'
                 return
             opposite = OPPOSITES.get(before.relation or "") == predicate.relation
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from deixis.perception.clouds.mesh import Mesh
     from deixis.workflows.layouts.lay_table import LaidScript
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-
 
 def simulate(
     layout: Annotated[str | None, typer.Argument(metavar="LAYOUT", help="A layout script, or use --random.")] = None,
@@ -118,9 +116,10 @@ def _meshes(given: list[str], unit: str) -> dict[str, Mesh]:
 
     from deixis.errors import DeixisError
     from deixis.perception.clouds.mesh_file import read_mesh
+    from deixis.perception.scene import UNITS_OF_LENGTH
 
-    if unit not in UNITS:
-        raise DeixisError(f"simulate: --mesh-unit must be one of {', '.join(UNITS)}, got '{unit}'")
+    if unit not in UNITS_OF_LENGTH:
+        raise DeixisError(f"simulate: --mesh-unit must be one of {', '.join(UNITS_OF_LENGTH)}, got '{unit}'")
     meshes: dict[str, Mesh] = {}
     for entry in given:
         name, sign, file = entry.partition("=")
@@ -129,5 +128,5 @@ def _meshes(given: list[str], unit: str) -> dict[str, Mesh]:
         if name in meshes:
             raise DeixisError(f"simulate: two meshes are given for '{name}'")
         read = read_mesh(file)
-        meshes[name] = replace(read, vertices=read.vertices * UNITS[unit])
+        meshes[name] = replace(read, vertices=read.vertices * UNITS_OF_LENGTH[unit])
     return meshes

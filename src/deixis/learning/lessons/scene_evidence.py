@@ -14,7 +14,7 @@ from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import Ontology
 from deixis.ontology.things.kinds import Kinds
-from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
+from deixis.perception.scene import DEFAULT_VIEWPOINT, UNITS_OF_LENGTH, PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.claims.places import supporting_box
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from, thing_evidence
@@ -32,8 +32,8 @@ HUGE = 8.0
 SMALL_THING = 0.2
 """Length in metres that is expected of things of no known kind when a unit is proposed."""
 
-SMALLER_UNITS = {"cm": 0.01, "mm": 0.001}
-"""Units that a scene may have been written in, with their lengths in metres."""
+SMALLER_UNITS = ("cm", "mm")
+"""Units that a scene may have been written in."""
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
@@ -294,7 +294,7 @@ def unit_notes(scene: Scene, names: Sequence[str], ontology: Ontology) -> tuple[
     if seen <= 0 or (known is None and seen < HUGE) or (known is not None and 1 / ODD_SCALE < seen / known < ODD_SCALE):
         return ()
     expected = SMALL_THING if known is None else known
-    unit = min(SMALLER_UNITS, key=lambda unit: abs(np.log(seen * SMALLER_UNITS[unit] / expected)))
+    unit = min(SMALLER_UNITS, key=lambda unit: abs(np.log(seen * UNITS_OF_LENGTH[unit] / expected)))
     if seen < expected:
         return (
             f'half of the things are shorter than {1000 * seen:.2g} mm: check the numbers and the "unit" of the scene',
