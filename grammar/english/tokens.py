@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from deixis.grammar.english.tree import Degree, Span
-from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
+from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
     ADVERBS,
     DETERMINERS,
@@ -98,7 +98,13 @@ _DENIALS = {
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("nowhere", "to", "be"): "not",
-    ("'d", "better"): "should", ("had", "better"): "should",
+    ("'d", "better"): "should", ("had", "better"): "should", ("little", "or", "no"): "no", ("few", "or", "no"): "no",
+    **{
+        (has, "no", noun, *being): plain
+        for has, plain in (("has", "is not"), ("have", "are not"))
+        for noun in ("business", "place")
+        for being in ((), ("being",))
+    },
 }  # fmt: skip
 """Phrases that deny what follows them, advise it or say how it became, with the words that say the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
@@ -122,8 +128,9 @@ _ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z
 _ALONE = re.compile(r"\([a-z][^().!?\n]{20,}\)(?=\s+[A-Z])")
 """Sentence in parentheses without a full stop of its own."""
 _STEP = re.compile(
-    r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714]"
-    r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
+    r"[ \t]*(?:[\u2022\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714][ \t]*|"
+    r"(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2013]"
+    r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+)",
     re.I,
 )
 _BARE_STEP = re.compile(r"[ \t]*(\d{1,2})[ \t]+(?=([A-Za-z]+))")
@@ -330,16 +337,23 @@ def _read_and_or(words: list[Word]) -> None:
 
 
 def _read_ranges(words: list[Word]) -> None:
-    """Read *two to three cups* and *two/three cups* as *2-3 cups*, and *5 mm to 10 mm* as *10 mm*."""
+    """Read *two to three cups*, *two/three cups* and *two or three cups* as *2-3 cups*, and *5 mm to 10 mm* as *10 mm*.
+
+    Qualities between which a thing is (*a small to medium bowl*) are left out.
+    """
     for i in range(len(words) - 4, -1, -1):
         norms = [word.norm for word in words[i : i + 5]]
         if i and words[i - 1].norm in ("from", "between"):
+            continue
+        qualities = is_adjective(norms[0]) and is_adjective(norms[2]) and DIRECTION_WORDS.isdisjoint(norms[:3:2])
+        if i and qualities and norms[1] == "to" and words[i - 1].norm in DETERMINERS and norms[3].isalpha():
+            del words[i : i + 3]
             continue
         if len(norms) == 5 and norms[2] == "to" and norms[1] == norms[4] and norms[1] in UNITS:
             del words[i : i + 3]
             continue
         spelled = norms[0].isalpha() and norms[2].isalpha()  # '1/2' is a half
-        if norms[1] != "to" and not (norms[1] == "/" and spelled):
+        if norms[1] != "to" and not (norms[1] in ("/", "or") and spelled):
             continue
         first, last = (NUMBERS.get(n, int(n) if n.isdecimal() and len(n) <= MAX_DIGITS else 0) for n in norms[:3:2])
         if not 0 < first < last:
@@ -392,7 +406,9 @@ def _read_facing_commands(words: list[Word]) -> None:
 
 
 _PHRASE_OF_SETUP = frozenset({"in", "for", "with"})
-_MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
+_MEASURING_PARTS = word_set(
+    "eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof ground floor table"
+)
 """Parts of the body, and of a room, at whose level a thing can be."""
 
 
@@ -498,8 +514,13 @@ def _deny_contrasts(words: list[Word]) -> None:
         if [word.norm for word in words[i : i + 2]] == ["all", "but"] and words[i + 3].norm == "of":
             words[i].norm, words[i].end = "most", words[i + 2].end  # 'all but one of the forks'
             del words[i + 1 : i + 3]
-    for i in range(1, len(words) - 2):
-        if (words[i].norm, words[i + 1].norm) in _CONTRASTS and words[i - 1].norm not in (";", ":", "."):
+    for i in range(len(words) - 3, 0, -1):
+        if (words[i].norm, words[i + 1].norm) not in _CONTRASTS or words[i - 1].norm in (";", ":", "."):
+            continue
+        end = next((k for k in range(i + 2, len(words) - 1) if words[k].norm == ","), 0)
+        if words[i - 1].norm == "," and end and words[end + 1].norm in PUT_VERBS:
+            del words[i : end + 1]  # 'on the mat, rather than the fork, put the spoon'
+        else:
             words[i].norm, words[i + 1].norm = ",", "not"
 
 
