@@ -387,13 +387,11 @@ class Relations(Mentions):
             return False
         self._add("contents", (vessel,), (), value=content.noun)
         if content.same_as is None and not content.members:
-            if (
-                len([d for d in self.drafts if content in (*d.subjects, *d.arguments)]) > 0
-                or content.born < self.how.sentence
-            ):
-                self._identify(vessel, content)
-            else:
+            placed = any(content in (*d.subjects, *d.arguments) for d in self.drafts)
+            if not (placed or content.born < self.how.sentence):
                 self._identify(content, vessel)
+            elif not content.indefinite:  # after 'pour water into the cup', 'fill the tank with water' is other water
+                self._identify(vessel, content)
         return True
 
     def _between(self, subject: Entity, entities: list[Entity]) -> None:
