@@ -42,8 +42,8 @@ EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"
 
 CONTAINING = frozenset({"contains", "contain", "containing"})
 
-HOLDING = frozenset({"holds", "hold", "holding"}) | EMPTY
-"""Words of clauses that say what a vessel holds: *it is empty except for a spoon*."""
+HOLDING = frozenset({"holds", "hold", "holding", "filled", "full", "stuffed", "packed", "crammed", "stocked"}) | EMPTY
+"""Words of clauses that say what a vessel holds: *it is filled with spoons*, *it is empty except for a spoon*."""
 
 SUPPORTS = frozenset(
     [
