@@ -99,6 +99,7 @@ _DENIALS = {
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("nowhere", "to", "be"): "not",
     ("'d", "better"): "should", ("had", "better"): "should", ("little", "or", "no"): "no", ("few", "or", "no"): "no",
+    ("at", "or", "near"): "near", ("in", "or", "near"): "near", ("on", "or", "near"): "near",
     **{
         (has, "no", noun, *being): plain
         for has, plain in (("has", "is not"), ("have", "are not"))
@@ -106,7 +107,7 @@ _DENIALS = {
         for being in ((), ("being",))
     },
 }  # fmt: skip
-"""Phrases that deny what follows them, advise it or say how it became, with the words that say the same."""
+"""Phrases that deny what follows them, advise it, or say how it became or about where, with words for the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _FORMS_OF_ADDRESS = word_set("mr mrs ms dr st prof capt rev sgt lt col gen")
@@ -524,6 +525,25 @@ def _deny_contrasts(words: list[Word]) -> None:
             words[i].norm, words[i + 1].norm = ",", "not"
 
 
+def _without_inserted_adverbs(words: list[Word]) -> None:
+    """Read *there should, however, be a cup* without the commas, which part a modal verb from its verb."""
+    for i in range(len(words) - 4, 0, -1):
+        inserted = [word.norm for word in words[i : i + 3 : 2]] == [",", ","]
+        said = words[i + 1].norm in ADVERBS | HEDGES and words[i - 1].norm in MODALS.keys() | IS_FORMS
+        if inserted and said and (words[i + 3].norm in IS_FORMS or words[i + 3].norm in verb_forms()):
+            del words[i + 2], words[i]
+
+
+def _without_following(words: list[Word]) -> None:
+    """Read *put the following cups here* as *put the cups here*, and *put the following here* as *put the items here*."""
+    for i in range(len(words) - 2, 0, -1):
+        if words[i].norm == "following" and words[i - 1].norm in ("the", "these"):
+            if words[i + 1].norm.isalpha() and words[i + 1].norm not in prepositions():
+                del words[i]
+            else:
+                words[i].norm = "items"
+
+
 def _count_halves(words: list[Word]) -> None:
     """Read *half a dozen* as 6, and *half of the eight cups* as *4 of the eight cups*."""
     for i in range(len(words) - 3, -1, -1):
@@ -832,6 +852,8 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)
+    _without_inserted_adverbs(found)
+    _without_following(found)
     _count_halves(found)
     _without_floating_each(found)
     _join_corrections(found)

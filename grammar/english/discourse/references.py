@@ -74,7 +74,7 @@ OPPOSITES = {
 }  # fmt: skip
 _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
-_LASTING = frozenset({"colour", "material", "contents", "ordinal"})
+_LASTING = frozenset({"colour", "material", "contents", "ordinal", "rank"})
 """Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
 _OWN = frozenset({"size", "height", "length", "width", "thickness", "colour", "material", "shape"})
 """Dimensions of adjectives that are true of one thing of a kind."""
@@ -434,6 +434,13 @@ class References:
             named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
             if alone and phrase.plural and phrase.count is None and not named:
                 continue  # 'the drums' after 'the bass drum'
+            every = alone and phrase.determiner in ("each", "every") and entity.born < self.sentence
+            if every and any(dimension in _LASTING for dimension, _ in entity.adjectives):
+                continue  # 'one on each square' after 'the white square'
+            sized = any(a.dimension == "size" and a.degree is Degree.PLAIN for a in phrase.adjectives)
+            other = phrase.head in GENERAL and entity.noun != phrase.head and sized
+            if other and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'the large pieces' after 'the foot pieces'
             kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
             if kind and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'towels' after 'a towel'

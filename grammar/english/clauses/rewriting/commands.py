@@ -38,6 +38,9 @@ _SERVING = word_set(
 _MEANS = (PLACING_VERBS | PUT_VERBS) - word_set("start finish turn top cover fill flank surround dot add press")
 """Verbs of means that say where their object comes to be: *by burying the roots in the soil*."""
 
+_PARTICLES = frozenset({"in", "on", "up", "down", "back", "over", "out"})
+"""Particles of verbs, after which their object or a place follows."""
+
 _GATHERING = word_set("put place store stow stash file group keep")
 """Verbs after which *with* can be a place: *store the lids with the pots*."""
 
@@ -242,6 +245,17 @@ def _are_companions(thing: Chunk, other: Chunk) -> bool:
     return named and (known or both) and not beside.members and last_word(beside.head) not in PARTS | SUBSTANCES | HANDS
 
 
+def _particle(chunks: list[Chunk], at: int) -> Run | None:
+    """Find a particle of a verb before a place: *drop it in near the middle*, *put in two cups next to the jar*."""
+    types = [type_at(chunks, at + k) for k in range(-2, 4)]
+    if types[2] == "UNKNOWN" and chunks[at].value in _PARTICLES:
+        moved = types[0] in ("PUT", "TPART", "TVERB") and types[1] == "NP" and types[3] in ("PREP", "ADV")
+        return (at + 1, None) if moved else None
+    if types[1:5] != ["PUT", "PREP", "NP", "PREP"] or word_of(chunks[at]) != "in":
+        return None
+    return (at + 1, None) if (chunks[at + 1].value.count or 1) > 1 else None
+
+
 def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
     """Return *you want the lamp to be on the left* as *the lamp is on the left*: what the reader wants is advice."""
     if any(chunk.type == "SUB" for chunk in chunks):
@@ -256,7 +270,7 @@ def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_wishes_as_statements, _with_companions_as_places, _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
+    without(_particle), _with_wishes_as_statements, _with_companions_as_places, _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
     without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands, _with_placements_as_commands,
 )  # fmt: skip
 """Rewritings of commands, in their order."""

@@ -131,9 +131,10 @@ def _without_second_names(chunks: list[Chunk]) -> list[Chunk]:
         single = bool(one.head and other.head) and not (one.plural or other.plural or one.members or other.members)
         named = single and (one.determiner in ("the", "a", "an") or one.owner is not None) and other.determiner is None
         if named and other.owner is None:
-            if len(other.head.split()) > len(one.head.split()):  # 'a coffee/side table'
-                first = replace(first, end=second.end, value=replace(one, head=other.head, known=other.known))
-            return _without_second_names([*chunks[: i - 1], first, emptied(slash), emptied(second), *chunks[i + 2 :]])
+            longer = len(other.head.split()) > len(one.head.split())  # 'a coffee/side table'
+            kept = replace(one, head=other.head, known=other.known) if longer else one
+            first = Chunk("NP", first.start, second.end, kept, (first.span[0], second.span[1]))
+            return _without_second_names([*chunks[: i - 1], first, *chunks[i + 2 :]])
     return chunks
 
 
