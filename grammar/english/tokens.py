@@ -364,6 +364,30 @@ def _read_ranges(words: list[Word]) -> None:
             del words[i + 1 : i + 3]
 
 
+def _without_dimensions(words: list[Word]) -> None:
+    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot board*, *a 2x4 shelf*."""
+    i = 0
+    while i < len(words) - 1:
+        end = i + 1
+        while _NUMBER_OF_DIMENSION.fullmatch(words[end - 1].norm) and end < len(words):
+            end += end < len(words) and words[end].norm in UNITS
+            if end + 1 < len(words) and words[end].norm in ("x", "by"):
+                end += 2
+            elif end < len(words) and _SECOND_DIMENSION.fullmatch(words[end].norm):
+                end += 1
+            else:
+                break
+        several = _NUMBER_OF_DIMENSION.fullmatch(words[i].norm) and end > i + 1 + (words[i + 1].norm in UNITS)
+        named = end < len(words) and words[end].norm.isalpha() and words[end].norm not in prepositions()
+        if several and named and (i == 0 or words[i - 1].norm in DETERMINERS | POSSESSIVES.keys() | NUMBERS.keys()):
+            del words[i:end]
+        i += 1
+
+
+_NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
+_SECOND_DIMENSION = re.compile(r"x\d+")
+
+
 def _without_set_aside(words: list[Word]) -> None:
     """Leave out the particle of *set aside a shelf for pans*, which is not a place."""
     for i in range(len(words) - 2, -1, -1):
@@ -542,6 +566,14 @@ def _without_following(words: list[Word]) -> None:
                 del words[i]
             else:
                 words[i].norm = "items"
+
+
+def _without_particles_of_filling(words: list[Word]) -> None:
+    """Read *fill in the corners* and *fill up the jar* without *in* and *up*."""
+    for i in range(len(words) - 2, 0, -1):
+        filled = words[i - 1].norm in ("fill", "filled", "filling") and words[i].norm in ("in", "up")
+        if filled and words[i + 1].norm in DETERMINERS | POSSESSIVES.keys():
+            del words[i]
 
 
 def _count_halves(words: list[Word]) -> None:
@@ -820,6 +852,8 @@ def words_of(text: str, span: Span) -> list[Word]:
                 found.append(Word(raw, "inches", start, end, True))
             elif norm in ("and", "at"):
                 found.append(Word(raw, norm, start, end, True))
+            elif raw == "\u00d7":
+                found.append(Word(raw, "x", start, end, True))
             elif raw in _ARROWS:
                 found.append(Word(raw, ":", start, end, False))
             elif unicodedata.category(raw)[0] in "SMC" and raw not in "<>=":
@@ -845,6 +879,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_opposites(found)
     _read_and_or(found)
     _read_ranges(found)
+    _without_dimensions(found)
     _without_set_aside(found)
     _read_setups(found)
     _without_settings(found)
@@ -854,6 +889,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _deny_contrasts(found)
     _without_inserted_adverbs(found)
     _without_following(found)
+    _without_particles_of_filling(found)
     _count_halves(found)
     _without_floating_each(found)
     _join_corrections(found)
@@ -896,7 +932,8 @@ def _is_length(text: str, span: tuple[int, int], number: Word, at: int) -> bool:
     mark = text[at]
     opened = sum(text[span[0] : at].count(quote) for quote in {mark, "\u201c" if mark in '"\u201d' else mark})
     apostrophes = len(re.findall(rf"(?<=\w){mark}(?=\w)", text[span[0] : at]))
-    return number.norm.isdigit() and number.end == at and (opened - apostrophes) % 2 == 0
+    quotes = mark not in "\u2032\u2033" and (opened - apostrophes) % 2 == 1
+    return number.norm.isdigit() and number.end == at and not quotes
 
 
 def _folded(raw: str) -> str:

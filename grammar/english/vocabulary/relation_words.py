@@ -96,7 +96,7 @@ opposite: facing opposite, on the opposite side of, at the opposite side of, opp
 against: against, up against, right up against, flush with, flush against
 along: along, all along, down the centre of, down the center of, down the middle of, along the middle of
 along: along the centre of, along the center of, down the length of, along the length of
-touching: in contact with, touching
+touching: in contact with, touching, back-to-back with, back to back with
 facing: facing, facing to, facing toward, facing towards, toward
 facing: towards, looking at, looking toward, looking towards, facing at
 pointing: pointing to, pointing at, pointing toward, pointing towards, pointing into

@@ -245,6 +245,18 @@ def _are_companions(thing: Chunk, other: Chunk) -> bool:
     return named and (known or both) and not beside.members and last_word(beside.head) not in PARTS | SUBSTANCES | HANDS
 
 
+def _with_aligned_parts(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *align the holes on the legs with the pegs* with a comma before *in line with*, which is of the holes."""
+    for i, chunk in enumerate(chunks[:-4]):
+        if chunk.type != "PUT" or chunk.value.lemma != "align" or type_at(chunks, i + 2) != "PREP":
+            continue
+        with_ = next((k for k in range(i + 3, end_before(chunks, i, BREAKS)) if chunks[k].type == "WITH"), 0)
+        if with_ and type_at(chunks, with_ + 1) == "NP":
+            beside = replace(chunks[with_], type="PREP", value=Relator(Preposition("in line with", "aligned")))
+            return [*chunks[:with_], put_in("COMMA", chunks[with_]), beside, *chunks[with_ + 1 :]]
+    return chunks
+
+
 def _particle(chunks: list[Chunk], at: int) -> Run | None:
     """Find a particle of a verb before a place: *drop it in near the middle*, *put in two cups next to the jar*."""
     types = [type_at(chunks, at + k) for k in range(-2, 4)]
@@ -270,7 +282,7 @@ def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    without(_particle), _with_wishes_as_statements, _with_companions_as_places, _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
+    without(_particle), _with_wishes_as_statements, _with_companions_as_places, _with_aligned_parts, _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
     without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands, _with_placements_as_commands,
 )  # fmt: skip
 """Rewritings of commands, in their order."""
