@@ -543,8 +543,9 @@ def _deny_contrasts(words: list[Word]) -> None:
         if (words[i].norm, words[i + 1].norm) not in _CONTRASTS or words[i - 1].norm in (";", ":", "."):
             continue
         end = next((k for k in range(i + 2, len(words) - 1) if words[k].norm == ","), 0)
-        if words[i - 1].norm == "," and end and words[end + 1].norm in PUT_VERBS:
-            del words[i : end + 1]  # 'on the mat, rather than the fork, put the spoon'
+        fronted = words[i - 1].norm == "," or words[0].norm in prepositions()
+        if fronted and end and words[end + 1].norm in PUT_VERBS:
+            del words[i : end + (words[i - 1].norm == ",")]  # 'on the mat, rather than the fork, put the spoon'
         else:
             words[i].norm, words[i + 1].norm = ",", "not"
 
