@@ -282,7 +282,8 @@ def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    without(_particle), _with_wishes_as_statements, _with_companions_as_places, _with_aligned_parts, _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
+    without(_particle), _with_wishes_as_statements, _with_companions_as_places, _with_aligned_parts,
+    _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
     without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands, _with_placements_as_commands,
 )  # fmt: skip
 """Rewritings of commands, in their order."""

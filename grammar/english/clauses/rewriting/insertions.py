@@ -121,7 +121,7 @@ def _is_definition(inside: list[Chunk]) -> bool:
 
 
 def _without_second_names(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out one of two names of one thing between which a slash stands: *the fan/light*, *my cutting/work table*."""
+    """Leave out one of two names of one thing with a slash between them: *the fan/light*, *my cutting/work table*."""
     for i in range(1, len(chunks) - 1):
         first, slash, second = chunks[i - 1 : i + 2]
         joined = slash.type == "OR" and first.span[1] == slash.span[0] == slash.span[1] - 1 == second.span[0] - 1
@@ -210,14 +210,16 @@ def _is_exclamation(chunk: Chunk) -> bool:
 
 
 def _without_times(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out the time at the beginning of a sentence: *Before the run, check …*, *Once set, …*, *Once in the hall, …*."""
+    """Leave out the time at the beginning of a sentence: *Before the run, …*, *Once set, …*, *Once in the hall, …*."""
     start = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
     if [type_at(chunks, start), type_at(chunks, start + 2)] == ["SUB", "COMMA"] and chunks[start].value == "once":
         done = chunks[start + 1]
         bare = done.type in ("ADJP", "PART") or (done.type == "NP" and done.end == done.start + 1)
         if bare:
             return [*chunks[:start], *(emptied(c) for c in chunks[start : start + 3]), *chunks[start + 3 :]]
-    if [type_at(chunks, start + k) for k in range(4)] == ["SUB", "PREP", "NP", "COMMA"] and chunks[start].value == "once":
+    if [type_at(chunks, start + k) for k in range(4)] == ["SUB", "PREP", "NP", "COMMA"] and chunks[
+        start
+    ].value == "once":
         return [*chunks[:start], *(emptied(c) for c in chunks[start : start + 4]), *chunks[start + 4 :]]
     types = [type_at(chunks, start + k) for k in range(4)]
     if types[0] == "SUB" and types[2:] == ["COMMA", "PUT"] and chunks[start].value in ("when", "once"):
@@ -279,7 +281,7 @@ def _without_insertions_between_dashes(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _without_second_names, _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes, _without_openings,
-    _without_times,
+    _without_second_names, _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes,
+    _without_openings, _without_times,
 )  # fmt: skip
 """Rewritings that take out what stands apart, in their order."""

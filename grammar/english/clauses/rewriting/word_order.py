@@ -48,7 +48,7 @@ _FOUND_OR_PUT = frozenset(
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
-_REGIONS = frozenset({"corner", "middle", "centre", "center", "side", "half"})
+_REGIONS = frozenset({"corner", "middle", "centre", "center", "side"})
 """Nouns of regions, in or on which things are."""
 
 _HOLDING = frozenset({"have", "hold", "contain", "display", "feature", "house"})
@@ -291,12 +291,16 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *the corner of the tray holds a lamp* as *a lamp is in the corner of the tray*, and *fill the corner with …*.
+    """Return *the corner of the tray holds a lamp*, *fill the corner with …* as *a lamp is in the corner of the tray*.
 
     A region is where a thing is, and has nothing itself.
     """
     for i, chunk in enumerate(chunks):
-        if chunk.type != "NP" or chunk.value.head not in _REGIONS or type_at(chunks, i - 1) not in ENDS | {"AND", "PUT"}:
+        if (
+            chunk.type != "NP"
+            or chunk.value.head not in _REGIONS
+            or type_at(chunks, i - 1) not in ENDS | {"AND", "PUT"}
+        ):
             continue
         verb = i + 1 + 2 * ([type_at(chunks, i + 1), type_at(chunks, i + 2)] == ["OF", "NP"])
         if chunk.value.head == "side" and verb > i + 1:
@@ -316,7 +320,7 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
         things = chunks[first:end]
         if being is None or not things or {c.type for c in things} - {"NP", "AND"} or things[0].type != "NP":
             continue
-        inner = Relator(Preposition(*("on", "on") if chunk.value.head in ("side", "half") else ("in", "inside")))
+        inner = Relator(Preposition(*("on", "on") if chunk.value.head == "side" else ("in", "inside")))
         place = [Chunk("PREP", chunk.start, chunk.start, inner, (chunk.span[0], chunk.span[0])), *chunks[i:verb]]
         if being.type == "PUT":
             return [*chunks[: i - 1], being, *things, *place, *chunks[end:]]
@@ -325,8 +329,8 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_filled_regions, _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture, _without_resumed_subjects,
-    _with_existential_have, _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs,
-    _with_contact_clauses, without(_stranded), _with_places_before_verbs,
+    _with_filled_regions, _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture,
+    _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs, _with_relative_places,
+    _with_objects_after_verbs, _with_contact_clauses, without(_stranded), _with_places_before_verbs,
 )  # fmt: skip
 """Rewritings that put clauses into plain order, one after the other."""
