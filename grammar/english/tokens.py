@@ -354,8 +354,9 @@ def _read_ranges(words: list[Word]) -> None:
         norms = [word.norm for word in words[i : i + 5]]
         if i and words[i - 1].norm in ("from", "between"):
             continue
-        qualities = is_adjective(norms[0]) and is_adjective(norms[2]) and DIRECTION_WORDS.isdisjoint(norms[:3:2])
-        if i and qualities and norms[1] == "to" and words[i - 1].norm in DETERMINERS and norms[3].isalpha():
+        quality = is_adjective(norms[0]) and DIRECTION_WORDS.isdisjoint(norms[:3:2]) and norms[2].isalpha()
+        quality = quality and norms[1] == "to" and norms[2] not in DETERMINERS | POSSESSIVES.keys()
+        if i and quality and words[i - 1].norm in DETERMINERS and norms[3].isalpha():
             del words[i : i + 3]
             continue
         if len(norms) == 5 and norms[2] == "to" and norms[1] == norms[4] and norms[1] in UNITS:
@@ -394,6 +395,24 @@ def _without_dimensions(words: list[Word]) -> None:
 
 _NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
 _SECOND_DIMENSION = re.compile(r"x\d+")
+
+
+def _read_halfway(words: list[Word]) -> None:
+    """Read *a bit over half way up the wall* as *halfway up the wall*."""
+    for i in range(len(words) - 3, -1, -1):
+        if [word.norm for word in words[i : i + 2]] == ["half", "way"]:
+            words[i].norm, words[i].end = "halfway", words[i + 1].end
+            del words[i + 1]
+        if words[i].norm != "halfway" or words[i + 1].norm not in ("up", "down", "along", "between"):
+            continue
+        start = i
+        while start and words[start - 1].norm in _NEARLY:
+            start -= 1
+        del words[start:i]
+
+
+_NEARLY = word_set("a bit little over about almost roughly nearly just more than less slightly")
+"""Words before *halfway* that say how nearly it is so."""
 
 
 def _without_set_aside(words: list[Word]) -> None:
@@ -890,6 +909,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_and_or(found)
     _read_ranges(found)
     _without_dimensions(found)
+    _read_halfway(found)
     _without_set_aside(found)
     _read_setups(found)
     _without_settings(found)

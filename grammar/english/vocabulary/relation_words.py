@@ -59,6 +59,7 @@ NEVER_PLACES = word_set(
 _PREPOSITIONS = """
 material: made of, made out of, made from, made up of, built of, built from, composed of, consisting of
 stacked: stacked upon
+on: halfway up, halfway down, halfway along
 on: all over, on, upon, onto, atop, on top of, ontop of, on to, over top of
 inside: in, inside, inside of, within, into, in side of
 at: at
