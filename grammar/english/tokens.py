@@ -397,6 +397,21 @@ _NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
 _SECOND_DIMENSION = re.compile(r"x\d+")
 
 
+def _without_entering(words: list[Word]) -> None:
+    """Read *on the left as you walk in stands a lamp* as *on the left stands a lamp*: left is as one sees it."""
+    for i in range(len(words) - 4, 0, -1):
+        if [word.norm for word in words[i : i + 2]] != ["as", "you"] or words[i + 2].norm not in _ENTERING:
+            continue
+        end = i + 3 + (words[i + 3].norm in ("in", "inside", "through"))
+        form = verb_forms().get(words[end].norm) if end < len(words) else None
+        stands = end < len(words) and (words[end].norm in IS_FORMS or (form is not None and form.kind == "posture"))
+        if stands and words[0].norm in prepositions():
+            del words[i:end]
+
+
+_ENTERING = word_set("enter walk come go step")
+
+
 def _read_halfway(words: list[Word]) -> None:
     """Read *a bit over half way up the wall* as *halfway up the wall*."""
     for i in range(len(words) - 3, -1, -1):
@@ -910,6 +925,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_ranges(found)
     _without_dimensions(found)
     _read_halfway(found)
+    _without_entering(found)
     _without_set_aside(found)
     _read_setups(found)
     _without_settings(found)
