@@ -679,7 +679,7 @@ _GOVERNORS = word_set(
 _SENSIBLE = word_set("make makes good more most perfect")
 """Words before *sense* with which an infinitive is advised: *it makes sense to keep it there*."""
 
-_RECOMMENDING = frozenset({"recommend"})
+_RECOMMENDING = frozenset({"recommend", "prefer"})
 """Verbs of writers whose *-ing* form is a command, unlike that of *suggest*: *we recommend placing it there*."""
 _RECOMMENDED_SO = word_set("do would 'd also highly strongly always really")
 """Words between a writer and what is recommended."""
