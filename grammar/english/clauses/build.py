@@ -367,6 +367,10 @@ class Builder(Transformer[Any, Built]):
             return replace(inner, determiner=phrase.determiner if phrase.determiner != "each" else "the", span=span)
         if not phrase.head and phrase.count is not None and phrase.determiner == "a":  # 'a pair of boots'
             return replace(inner, count=phrase.count, plural=True, span=union(phrase.span, inner.span))
+        bare = inner.determiner is None and inner.owner is None and inner.count is None and inner.pronoun is None
+        bare = bare and all(p.positive for p in inner.predicates)
+        if bare and phrase.head and not is_place(phrase) and last_word(phrase.head) not in PARTS:
+            inner, its = replace(inner, predicates=()), (*inner.predicates, *its)  # 'a glass of water on the table'
         return replace(
             phrase, of=inner, span=union(phrase.span, inner.span), predicates=(*phrase.predicates, *thing.extra, *its)
         )

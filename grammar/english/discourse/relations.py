@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PARTS,
     PEOPLE,
     SUBSTANCES,
+    SUPPORTS,
     SURFACES,
     VESSELS,
     VIEWER_WORDS,
@@ -44,34 +45,6 @@ CONTAINING = frozenset({"contains", "contain", "containing"})
 
 HOLDING = frozenset({"holds", "hold", "holding"}) | EMPTY
 """Words of clauses that say what a vessel holds: *it is empty except for a spoon*."""
-
-SUPPORTS = frozenset(
-    [
-        "saucer",
-        "plate",
-        "tray",
-        "mat",
-        "coaster",
-        "napkin",
-        "board",
-        "cloth",
-        "stand",
-        "shelf",
-        "table",
-        "doily",
-        "tile",
-        "tier",
-        "platform",
-        "plinth",
-        "pedestal",
-        "easel",
-        "trivet",
-        "peg",
-        "hook",
-        "nail",
-        "hanger",
-    ]
-)
 
 
 _OUTER = frozenset({"top", "rim", "edge", "brim"})
