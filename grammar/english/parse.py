@@ -34,7 +34,7 @@ from deixis.grammar.english.tokens import (
 from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_nouns
-from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import GENERAL, HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL
 from deixis.grammar.english.vocabulary.verbs import verb_forms
@@ -137,6 +137,9 @@ def _place_of_list(
     whole = sentence.fragment is None and len(sentence.clauses) == 1 and sentence.clauses[0].subject is None
     if whole and sentence.clauses[0].span[0] == sentence.span[0]:
         return sentence.clauses[0].predicates
+    told = sentence.clauses[0].subject if len(sentence.clauses) == 1 and ends else None
+    if told is not None and told.head in GENERAL and told.plural and told.determiner in ("the", "these"):
+        return sentence.clauses[0].predicates  # 'place the following items on the tray:'
     phrase = sentence.fragment
     if not ends or phrase is None or sentence.clauses or phrase.predicates or phrase.members:
         return ()

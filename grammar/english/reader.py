@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from deixis.deadline import Deadline
-from deixis.grammar.english.confidence import MIN_STATED, Guess, confidence, is_doubtful
+from deixis.grammar.english.confidence import Guess, Standing, confidence, standing
 from deixis.grammar.english.discourse.discourse import Discourse
 from deixis.grammar.english.discourse.drafts import Draft as FactDraft
 from deixis.grammar.english.discourse.entities import Entity, Role, names_of
@@ -74,7 +74,7 @@ def read_english(
     drafts = discourse.read()
     writer = _Writer(text, file, ontology, discourse)
     read = [fact for draft in drafts for fact in writer.facts(draft)]
-    stated = tuple(fact for fact in read if fact.confidence >= MIN_STATED)
+    stated = tuple(fact for fact in read if _standing(fact) is not Standing.LEFT_OUT)
     by_sentence: dict[int, list[StatedFact]] = {}
     for fact in read:
         by_sentence.setdefault(fact.sentence, []).append(fact)
@@ -117,7 +117,7 @@ class _Writer:
         for entity in [*discourse.references.entities, *_entities(discourse.drafts)]:
             for leaf in entity.leaves():
                 order[leaf] = None
-        kept = [draft for draft in discourse.drafts if confidence(draft.how.guesses) >= MIN_STATED]
+        kept = [draft for draft in discourse.drafts if standing(draft.how.guesses) is not Standing.LEFT_OUT]
         stated, written = (
             {leaf for e in _entities(drafts) for leaf in e.leaves()} for drafts in (kept, discourse.drafts)
         )
@@ -212,7 +212,7 @@ class _Writer:
         doubted = [
             Misunderstood(fact.span, ", ".join(Guess[name].value for name in fact.guesses), self._plainly(fact))
             for fact in facts
-            if is_doubtful(Guess[name] for name in fact.guesses)
+            if _standing(fact) is not Standing.ASSERTED
         ]
         silent = [
             Misunderstood(clause.span, "this has no relation or property that a fact can state")
@@ -224,7 +224,7 @@ class _Writer:
             text=" ".join(sentence.text.split()),
             span=sentence.span,
             paraphrase=paraphrase(
-                [fact for fact in facts if fact.confidence >= MIN_STATED],
+                [fact for fact in facts if _standing(fact) is not Standing.LEFT_OUT],
                 surface.noun if surface is not None else "table",
                 self.name,
             ),
@@ -295,6 +295,10 @@ class _Writer:
             marks += [stated.condition] if stated.condition else []
             note = f"{content}" + (f"  ({', '.join(marks)})" if marks else "")
             yield Comment(note, Source(source.file, source.line, source.column, source.line, source.column), True)
+
+
+def _standing(fact: StatedFact) -> Standing:
+    return standing(Guess[name] for name in fact.guesses)
 
 
 def _entities(drafts: list[FactDraft]) -> list[Entity]:

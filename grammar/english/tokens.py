@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from deixis.grammar.english.tree import Degree, Span
-from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
+from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
     ADVERBS,
     DETERMINERS,
@@ -102,9 +102,16 @@ _DENIALS = {
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("nowhere", "to", "be"): "not",
-    ("'d", "better"): "should", ("had", "better"): "should",
+    ("'d", "better"): "should", ("had", "better"): "should", ("little", "or", "no"): "no", ("few", "or", "no"): "no",
+    ("at", "or", "near"): "near", ("in", "or", "near"): "near", ("on", "or", "near"): "near",
+    **{
+        (has, "no", noun, *being): plain
+        for has, plain in (("has", "is not"), ("have", "are not"))
+        for noun in ("business", "place")
+        for being in ((), ("being",))
+    },
 }  # fmt: skip
-"""Phrases that deny what follows them, advise it or say how it became, with the words that say the same."""
+"""Phrases that deny what follows them, advise it, or say how it became or about where, with words for the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _FORMS_OF_ADDRESS = word_set("mr mrs ms dr st prof capt rev sgt lt col gen")
@@ -126,8 +133,9 @@ _ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z
 _ALONE = re.compile(r"\([a-z][^().!?\n]{20,}\)(?=\s+[A-Z])")
 """Sentence in parentheses without a full stop of its own."""
 _STEP = re.compile(
-    r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714]"
-    r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
+    r"[ \t]*(?:[\u2022\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714][ \t]*|"
+    r"(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2013]"
+    r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+)",
     re.I,
 )
 _BARE_STEP = re.compile(r"[ \t]*(\d{1,2})[ \t]+(?=([A-Za-z]+))")
@@ -334,16 +342,23 @@ def _read_and_or(words: list[Word]) -> None:
 
 
 def _read_ranges(words: list[Word]) -> None:
-    """Read *two to three cups* and *two/three cups* as *2-3 cups*, and *5 mm to 10 mm* as *10 mm*."""
+    """Read *two to three cups*, *two/three cups* and *two or three cups* as *2-3 cups*, and *5 mm to 10 mm* as *10 mm*.
+
+    Qualities between which a thing is (*a small to medium bowl*) are left out.
+    """
     for i in range(len(words) - 4, -1, -1):
         norms = [word.norm for word in words[i : i + 5]]
         if i and words[i - 1].norm in ("from", "between"):
+            continue
+        qualities = is_adjective(norms[0]) and is_adjective(norms[2]) and DIRECTION_WORDS.isdisjoint(norms[:3:2])
+        if i and qualities and norms[1] == "to" and words[i - 1].norm in DETERMINERS and norms[3].isalpha():
+            del words[i : i + 3]
             continue
         if len(norms) == 5 and norms[2] == "to" and norms[1] == norms[4] and norms[1] in UNITS:
             del words[i : i + 3]
             continue
         spelled = norms[0].isalpha() and norms[2].isalpha()  # '1/2' is a half
-        if norms[1] != "to" and not (norms[1] == "/" and spelled):
+        if norms[1] != "to" and not (norms[1] in ("/", "or") and spelled):
             continue
         first, last = (NUMBERS.get(n, int(n) if n.isdecimal() and len(n) <= MAX_DIGITS else 0) for n in norms[:3:2])
         if not 0 < first < last:
@@ -351,6 +366,30 @@ def _read_ranges(words: list[Word]) -> None:
         if norms[3].isalpha() and norms[3] not in UNITS.keys() | prepositions().keys() | IS_FORMS | {"and", "o'clock"}:
             words[i].norm, words[i].end = f"{first:g}-{last:g}", words[i + 2].end
             del words[i + 1 : i + 3]
+
+
+def _without_dimensions(words: list[Word]) -> None:
+    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot board*, *a 2x4 shelf*."""
+    i = 0
+    while i < len(words) - 1:
+        end = i + 1
+        while _NUMBER_OF_DIMENSION.fullmatch(words[end - 1].norm) and end < len(words):
+            end += end < len(words) and words[end].norm in UNITS
+            if end + 1 < len(words) and words[end].norm in ("x", "by"):
+                end += 2
+            elif end < len(words) and _SECOND_DIMENSION.fullmatch(words[end].norm):
+                end += 1
+            else:
+                break
+        several = _NUMBER_OF_DIMENSION.fullmatch(words[i].norm) and end > i + 1 + (words[i + 1].norm in UNITS)
+        named = end < len(words) and words[end].norm.isalpha() and words[end].norm not in prepositions()
+        if several and named and (i == 0 or words[i - 1].norm in DETERMINERS | POSSESSIVES.keys() | NUMBERS.keys()):
+            del words[i:end]
+        i += 1
+
+
+_NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
+_SECOND_DIMENSION = re.compile(r"x\d+")
 
 
 def _without_set_aside(words: list[Word]) -> None:
@@ -391,9 +430,9 @@ def _without_asides_in_verbs(words: list[Word]) -> None:
         if end - start > MAX_ASIDE_WORDS or words[end : end + 1] == [] or words[end].norm != "," or form is None:
             continue
         later = any(word.norm in prepositions() for word in words[verb + 1 :])
-        if form.form == "base" or (words[verb - 1].norm == "be" and form.form in ("past", "participle")):
-            if words[start + 1].norm not in prepositions() or later:
-                del words[start : end + 1]
+        ends_group = form.form == "base" or (words[verb - 1].norm == "be" and form.form in ("past", "participle"))
+        if ends_group and (words[start + 1].norm not in prepositions() or later):
+            del words[start : end + 1]
 
 
 def _without_settings(words: list[Word]) -> None:
@@ -418,7 +457,9 @@ def _read_facing_commands(words: list[Word]) -> None:
 
 
 _PHRASE_OF_SETUP = frozenset({"in", "for", "with"})
-_MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
+_MEASURING_PARTS = word_set(
+    "eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof ground floor table"
+)
 """Parts of the body, and of a room, at whose level a thing can be."""
 
 
@@ -524,9 +565,42 @@ def _deny_contrasts(words: list[Word]) -> None:
         if [word.norm for word in words[i : i + 2]] == ["all", "but"] and words[i + 3].norm == "of":
             words[i].norm, words[i].end = "most", words[i + 2].end  # 'all but one of the forks'
             del words[i + 1 : i + 3]
-    for i in range(1, len(words) - 2):
-        if (words[i].norm, words[i + 1].norm) in _CONTRASTS and words[i - 1].norm not in (";", ":", "."):
+    for i in range(len(words) - 3, 0, -1):
+        if (words[i].norm, words[i + 1].norm) not in _CONTRASTS or words[i - 1].norm in (";", ":", "."):
+            continue
+        end = next((k for k in range(i + 2, len(words) - 1) if words[k].norm == ","), 0)
+        fronted = words[i - 1].norm == "," or words[0].norm in prepositions()
+        if fronted and end and words[end + 1].norm in PUT_VERBS:
+            del words[i : end + (words[i - 1].norm == ",")]  # 'on the mat, rather than the fork, put the spoon'
+        else:
             words[i].norm, words[i + 1].norm = ",", "not"
+
+
+def _without_inserted_adverbs(words: list[Word]) -> None:
+    """Read *there should, however, be a cup* without the commas, which part a modal verb from its verb."""
+    for i in range(len(words) - 4, 0, -1):
+        inserted = [word.norm for word in words[i : i + 3 : 2]] == [",", ","]
+        said = words[i + 1].norm in ADVERBS | HEDGES and words[i - 1].norm in MODALS.keys() | IS_FORMS
+        if inserted and said and (words[i + 3].norm in IS_FORMS or words[i + 3].norm in verb_forms()):
+            del words[i + 2], words[i]
+
+
+def _without_following(words: list[Word]) -> None:
+    """Read *put the following cups here* as *put the cups here*, and *put the following here* as *put the items here*."""
+    for i in range(len(words) - 2, 0, -1):
+        if words[i].norm == "following" and words[i - 1].norm in ("the", "these"):
+            if words[i + 1].norm.isalpha() and words[i + 1].norm not in prepositions():
+                del words[i]
+            else:
+                words[i].norm = "items"
+
+
+def _without_particles_of_filling(words: list[Word]) -> None:
+    """Read *fill in the corners* and *fill up the jar* without *in* and *up*."""
+    for i in range(len(words) - 2, 0, -1):
+        filled = words[i - 1].norm in ("fill", "filled", "filling") and words[i].norm in ("in", "up")
+        if filled and words[i + 1].norm in DETERMINERS | POSSESSIVES.keys():
+            del words[i]
 
 
 def _count_halves(words: list[Word]) -> None:
@@ -805,6 +879,8 @@ def words_of(text: str, span: Span) -> list[Word]:
                 found.append(Word(raw, "inches", start, end, True))
             elif norm in ("and", "at"):
                 found.append(Word(raw, norm, start, end, True))
+            elif raw == "\u00d7":
+                found.append(Word(raw, "x", start, end, True))
             elif raw in _ARROWS:
                 found.append(Word(raw, ":", start, end, False))
             elif unicodedata.category(raw)[0] in "SMC" and raw not in "<>=":
@@ -830,6 +906,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_opposites(found)
     _read_and_or(found)
     _read_ranges(found)
+    _without_dimensions(found)
     _without_set_aside(found)
     _read_setups(found)
     _without_asides_in_verbs(found)
@@ -838,6 +915,9 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)
+    _without_inserted_adverbs(found)
+    _without_following(found)
+    _without_particles_of_filling(found)
     _count_halves(found)
     _without_floating_each(found)
     _join_corrections(found)
@@ -880,7 +960,8 @@ def _is_length(text: str, span: tuple[int, int], number: Word, at: int) -> bool:
     mark = text[at]
     opened = sum(text[span[0] : at].count(quote) for quote in {mark, "\u201c" if mark in '"\u201d' else mark})
     apostrophes = len(re.findall(rf"(?<=\w){mark}(?=\w)", text[span[0] : at]))
-    return number.norm.isdigit() and number.end == at and (opened - apostrophes) % 2 == 0
+    quotes = mark not in "\u2032\u2033" and (opened - apostrophes) % 2 == 1
+    return number.norm.isdigit() and number.end == at and not quotes
 
 
 def _folded(raw: str) -> str:

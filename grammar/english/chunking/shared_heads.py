@@ -45,7 +45,8 @@ _ENDINGS = ("spoon", "cup")
 
 _OPPOSITES = (
     {"front", "back"}, {"front", "rear"}, {"left", "right"}, {"top", "bottom"}, {"upper", "lower"}, {"inner", "outer"},
-    {"top", "middle"}, {"middle", "bottom"}, {"left", "middle"}, {"middle", "right"}, {"side", "back"}, {"side", "front"}, {"side", "top"}, {"side", "bottom"}, {"first", "second"}, {"main", "side"},
+    {"top", "middle"}, {"middle", "bottom"}, {"left", "middle"}, {"middle", "right"},
+    {"side", "back"}, {"side", "front"}, {"side", "top"}, {"side", "bottom"}, {"first", "second"}, {"main", "side"},
 )  # fmt: skip
 """Pairs of modifiers that no single thing has both of."""
 

@@ -334,7 +334,7 @@ def _after_of(types: list[str], at: int) -> int:
 
 
 def _objects_alone(chunks: list[Chunk], types: list[str], start: int, at: int) -> bool:
-    """Return True for a command that says nothing yet of where its objects go: *store four mugs*, not *set the table*."""
+    """Return True for a command that has its objects and no place yet: *store four mugs*, not *set the table*."""
     objects = chunks[start + 1 : at]
     placed = any(last_word(c.value.head) in SURFACES for c in objects if c.type == "NP")
     return types[start] == "PUT" and types[start + 1 : at].count("NP") > 0 and set(types[start + 1 : at]) <= {

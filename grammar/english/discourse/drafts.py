@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from deixis.grammar.english.confidence import Guess, is_doubtful
+from deixis.grammar.english.confidence import Guess, Standing, standing
 from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.references import References
 from deixis.grammar.english.discourse.surfaces import surface_noun
@@ -161,7 +161,7 @@ class Drafting:
             how = replace(how, guesses=how.guesses | {Guess.STRANGE})
         if nameless or any(self._is_no_thing(leaf) for entity in arguments for leaf in entity.leaves()):
             how = replace(how, guesses=how.guesses | {Guess.NO_THING})
-        if is_doubtful(how.guesses):
+        if standing(how.guesses) is not Standing.ASSERTED:
             how = replace(how, uncertain=True, optional=True, weight=min(how.weight, 0.5))
         draft = Draft(relation, subjects, arguments, how, value, metres)
         if draft not in self.drafted:

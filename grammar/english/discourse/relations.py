@@ -43,8 +43,8 @@ EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"
 
 CONTAINING = frozenset({"contains", "contain", "containing"})
 
-HOLDING = frozenset({"holds", "hold", "holding"}) | EMPTY
-"""Words of clauses that say what a vessel holds: *it is empty except for a spoon*."""
+HOLDING = frozenset({"holds", "hold", "holding", "filled", "full", "stuffed", "packed", "crammed", "stocked"}) | EMPTY
+"""Words of clauses that say what a vessel holds: *it is filled with spoons*, *it is empty except for a spoon*."""
 
 
 _OUTER = frozenset({"top", "rim", "edge", "brim"})
@@ -360,13 +360,11 @@ class Relations(Mentions):
             return False
         self._add("contents", (vessel,), (), value=content.noun)
         if content.same_as is None and not content.members:
-            if (
-                len([d for d in self.drafts if content in (*d.subjects, *d.arguments)]) > 0
-                or content.born < self.how.sentence
-            ):
-                self._identify(vessel, content)
-            else:
+            placed = any(content in (*d.subjects, *d.arguments) for d in self.drafts)
+            if not (placed or content.born < self.how.sentence):
                 self._identify(content, vessel)
+            elif not content.indefinite:  # after 'pour water into the cup', 'fill the tank with water' is other water
+                self._identify(vessel, content)
         return True
 
     def _between(self, subject: Entity, entities: list[Entity]) -> None:

@@ -20,7 +20,7 @@ from deixis.grammar.english.reader import read_english
         ("Put the food you need later that week in the box.", ["inside(food, box)"]),
         ("Keep meat in the box, so that no juice falls on other items.", ["inside(meat, box)"]),
         ("Store mugs, and glasses on the tray.", ["on(mugs)", "on(glasses)"]),
-        ("Place a cup on the mat and a glass of water on the tray.", ["on(cup, mat)", "on(glass, tray)"]),
+        ("Place a cup on the mat and a glass of water on the napkin.", ["on(cup, mat)", "on(glass, napkin)"]),
     ],
 )
 def test_advice_on_keeping_gives_its_facts(text: str, expected: list[str]) -> None:
@@ -41,7 +41,7 @@ def test_two_sides_share_the_noun_after_or(text: str) -> None:
     [
         ("The tray holds a mug, a bar of soap on a dish, a comb, and a jug.",
          {"on(mug, tray)", "on(bar, dish)", "on(comb, tray)", "on(jug, tray)"}),
-        ("On the shelf there are a mug, a bar on a dish, and a jug.", {"on(bar, dish)", "on(mug)", "on(bar)", "on(jug)"}),
+        ("On the shelf are a mug, a bar on a dish, and a jug.", {"on(bar, dish)", "on(mug)", "on(bar)", "on(jug)"}),
         ("From left to right: a mug, a bar on a dish, a comb, and a jug.",
          {"on(bar, dish)", "row(mug, bar, comb, jug, 'left to right')"}),
         ("There is a cup on the tray, a jug on the mat, and a spoon on the box.",
@@ -72,7 +72,7 @@ def test_an_aside_does_not_end_a_denial(denial: str) -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("Put the fork on the mat before placing the cup on the tray.", ["on(fork, mat)", "on(cup, tray)"]),
+        ("Put the fork on the mat before placing the cup on the napkin.", ["on(fork, mat)", "on(cup, napkin)"]),
         ("After covering the plates, put the fork on the mat.", ["on(fork, mat)"]),
         ("Place the forks on the mat, so guests can pick these up after filling their plates.", ["on(forks, mat)"]),
     ],
