@@ -174,12 +174,14 @@ def _fronted_command(types: list[str], at: int) -> bool:
 
 
 def _verbless_inversion(types: list[str], at: int) -> bool:
-    """Return True for a place and its thing without a verb, to the end of the clause: *behind it the cup*."""
+    """Return True for a place and its thing without a verb: *behind it the cup*, *behind it, half hidden, a cup*."""
     objects = 0
     while types[at : at + 2] == ["PREP", "NP"] and objects == 0:
         at, objects = at + 2, 1
         while types[at : at + 2] == ["OF", "NP"]:
             at += 2
+    if types[at : at + 3] in (["COMMA", "PART", "COMMA"], ["COMMA", "ADJP", "COMMA"]):
+        at += 3
     if not objects or types[at : at + 1] != ["NP"]:
         return False
     at += 1

@@ -180,6 +180,8 @@ class Relations(Mentions):
             self._add(f"none_{relation}", (subject,), ())  # 'the plate has nothing on it'
             return
         for phrase in predicate.arguments:
+            if predicate.reversed and phrase.head and phrase.owner is not None and phrase.owner.pronoun == "it":
+                phrase = replace(phrase, owner=None, determiner="the")  # 'on the mat, with its cable under it'
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
                 phrase = replace(phrase, head=others[-1].noun, pronoun=None, determiner="another")  # 'not in the one …'
             last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None

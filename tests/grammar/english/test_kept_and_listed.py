@@ -79,3 +79,25 @@ def test_an_aside_does_not_end_a_denial(denial: str) -> None:
 )
 def test_a_participle_of_time_is_what_the_reader_does(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The clipper is on the mat, with its cable tucked under it.", ["on(clipper, mat)", "under(cable, clipper)"]),
+        ("The clipper is on the mat with its cable beside it.", ["on(clipper, mat)", "next_to(cable, clipper)"]),
+    ],
+)
+def test_its_after_with_is_of_the_subject(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("On the left there is a jug, and behind it, partly hidden, a cup.", "behind(cup, jug)"),
+        ("The box with the pens we put behind the lamp.", "behind(box, lamp)"),
+    ],
+)
+def test_turned_clauses_give_their_facts(text: str, expected: str) -> None:
+    assert expected in asserted(text)
