@@ -18,7 +18,7 @@ RIGHT_WITHOUT_GUESSES = 0.87
 
 
 class Standing(StrEnum):
-    """What becomes of a fact."""
+    """Use of a fact by its confidence."""
 
     ASSERTED = "asserted"
     DOUBTFUL = "doubtful"

@@ -11,7 +11,7 @@ from deixis.grammar.english.confidence import Guess, Standing, confidence, stand
 from deixis.grammar.english.discourse.discourse import Discourse
 from deixis.grammar.english.discourse.drafts import Draft as FactDraft
 from deixis.grammar.english.discourse.entities import Entity, Role, names_of
-from deixis.grammar.english.parse import parse_english
+from deixis.grammar.english.parse import late, parse_until
 from deixis.grammar.english.telling.paraphrase import paraphrase
 from deixis.grammar.english.telling.wording import listed
 from deixis.grammar.english.tree import Clause, Misunderstood, Mood, Sentence
@@ -60,7 +60,7 @@ def read_english(
     ScriptError
         If nothing in the text was understood; it holds what was not.
     ScriptTimeError
-        If the time limit is reached.
+        If the time limit is reached; it holds the script of the sentences that were read before.
 
     Examples
     --------
@@ -69,7 +69,22 @@ def read_english(
     ['left(fork, plate)', 'right(knife, plate)']
     """
     ontology = ontology or default_ontology()
-    sentences = parse_english(text, ontology, deadline)
+    sentences, is_whole = parse_until(text, ontology, deadline.share(_SHARE_OF_PARSING))
+    if is_whole:
+        return _script_of(text, file, ontology, sentences)
+    try:
+        read = _script_of(text, file, ontology, sentences) if sentences else None
+    except ScriptError:
+        read = None
+    raise late(sentences, read)
+
+
+_SHARE_OF_PARSING = 0.6
+"""Share of a time limit that parsing may take, so that what was parsed can be read as facts."""
+
+
+def _script_of(text: str, file: str, ontology: Ontology, sentences: tuple[Sentence, ...]) -> Script:
+    """Return the script of the facts that parsed sentences state."""
     discourse = Discourse(text, sentences, dict(ontology.hedges), known_nouns(ontology.kinds))
     drafts = discourse.read()
     writer = _Writer(text, file, ontology, discourse)

@@ -31,6 +31,8 @@ MAX_LABEL_WORDS = 5
 """Number of words before a dash that can be a label: *sugar bowl - behind the pot*."""
 MAX_SENTENCE_WORDS = 400
 """Number of words after which a text without a full stop is cut."""
+MAX_SENTENCE_LENGTH = 8000
+"""Number of characters after which it is cut, before its words are told apart."""
 
 MAX_ABBREVIATION = 4
 """Number of letters of a word before a full stop and a number that is an abbreviation: *inv. 112*."""
@@ -187,7 +189,7 @@ def sentences(text: str) -> Iterator[RawSentence]:
             start += 1
         if start >= length:
             return
-        if start == 0 or text[start - 1] == "\n" or not text[:start].rsplit("\n", 1)[-1].strip():
+        if start == 0 or text[start - 1] == "\n" or not text[text.rfind("\n", 0, start) + 1 : start].strip():
             mark = _step(text, start)
             if mark is not None and mark.end() < length and text[mark.end() : mark.end() + 1] != "\n":
                 step = mark[0].strip()
@@ -196,6 +198,12 @@ def sentences(text: str) -> Iterator[RawSentence]:
         shown = end
         while shown > start and text[shown - 1].isspace():
             shown -= 1
+        while shown - start > MAX_SENTENCE_LENGTH:
+            space = text.rfind(" ", start + 1, start + MAX_SENTENCE_LENGTH)
+            last = space if space > 0 else start + MAX_SENTENCE_LENGTH
+            if any(character.isalnum() for character in text[start:last]):
+                yield RawSentence(start, last, step, False)
+            start = last
         if any(character.isalnum() for character in text[start:shown]):
             yield RawSentence(start, shown, step, heading and step is None)
         step = None
@@ -350,8 +358,9 @@ def _read_ranges(words: list[Word]) -> None:
         norms = [word.norm for word in words[i : i + 5]]
         if i and words[i - 1].norm in ("from", "between"):
             continue
-        qualities = is_adjective(norms[0]) and is_adjective(norms[2]) and DIRECTION_WORDS.isdisjoint(norms[:3:2])
-        if i and qualities and norms[1] == "to" and words[i - 1].norm in DETERMINERS and norms[3].isalpha():
+        quality = is_adjective(norms[0]) and DIRECTION_WORDS.isdisjoint(norms[:3:2]) and norms[2].isalpha()
+        quality = quality and norms[1] == "to" and norms[2] not in DETERMINERS | POSSESSIVES.keys()
+        if i and quality and words[i - 1].norm in DETERMINERS and norms[3].isalpha():
             del words[i : i + 3]
             continue
         if len(norms) == 5 and norms[2] == "to" and norms[1] == norms[4] and norms[1] in UNITS:
@@ -369,7 +378,7 @@ def _read_ranges(words: list[Word]) -> None:
 
 
 def _without_dimensions(words: list[Word]) -> None:
-    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot board*, *a 2x4 shelf*."""
+    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot board*."""
     i = 0
     while i < len(words) - 1:
         end = i + 1
@@ -390,6 +399,24 @@ def _without_dimensions(words: list[Word]) -> None:
 
 _NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
 _SECOND_DIMENSION = re.compile(r"x\d+")
+
+
+def _read_halfway(words: list[Word]) -> None:
+    """Read *a bit over half way up the wall* as *halfway up the wall*."""
+    for i in range(len(words) - 3, -1, -1):
+        if [word.norm for word in words[i : i + 2]] == ["half", "way"]:
+            words[i].norm, words[i].end = "halfway", words[i + 1].end
+            del words[i + 1]
+        if words[i].norm != "halfway" or words[i + 1].norm not in ("up", "down", "along", "between"):
+            continue
+        start = i
+        while start and words[start - 1].norm in _NEARLY:
+            start -= 1
+        del words[start:i]
+
+
+_NEARLY = word_set("a bit little over about almost roughly nearly just more than less slightly")
+"""Words before *halfway* that say how nearly it is so."""
 
 
 def _without_set_aside(words: list[Word]) -> None:
@@ -586,7 +613,7 @@ def _without_inserted_adverbs(words: list[Word]) -> None:
 
 
 def _without_following(words: list[Word]) -> None:
-    """Read *put the following cups here* as *put the cups here*, and *put the following here* as *put the items here*."""
+    """Read *put the following cups on it* as *put the cups on it*, and *the following* alone as *the items*."""
     for i in range(len(words) - 2, 0, -1):
         if words[i].norm == "following" and words[i - 1].norm in ("the", "these"):
             if words[i + 1].norm.isalpha() and words[i + 1].norm not in prepositions():
@@ -860,13 +887,14 @@ def words_of(text: str, span: Span) -> list[Word]:
     ['the', 'cup', 'is', 'not', 'on', 'the', 'left', 'side', '.']
     """
     found: list[Word] = []
-    struck = [match.span() for marks in (_STRUCK, _CODES) for match in marks.finditer(text, *span)]
-    struck += [match.span() for match in _IN_BRACKETS.finditer(text, *span) if _says_no_place(match[1])]
-    struck += _depicted(text, span)
+    left_out = [match.span() for marks in (_STRUCK, _CODES) for match in marks.finditer(text, *span)]
+    left_out += [match.span() for match in _IN_BRACKETS.finditer(text, *span) if _says_no_place(match[1])]
+    left_out += _depicted(text, span)
+    struck = {at for first, last in left_out for at in range(first, last)}
     for match in _WORD.finditer(text, *span):
         raw = match[0]
         start, end = match.span()
-        if any(first <= start < last for first, last in struck):
+        if start in struck:
             continue
         norm = raw.casefold().replace("\u2019", "'") if raw.isascii() or "\u2019" in raw else _folded(raw)
         norm = "pick\u00a0up" if norm == "pickup" and not found else TYPOS.get(norm, norm)
@@ -907,6 +935,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_and_or(found)
     _read_ranges(found)
     _without_dimensions(found)
+    _read_halfway(found)
     _without_set_aside(found)
     _read_setups(found)
     _without_asides_in_verbs(found)

@@ -109,6 +109,8 @@ class Drafting:
         self.edge: str | None = None
         self.end = 0  # of the sentence in the text
         self.condition: str | None = None
+        self.unreal: re.Match[str] | None = None  # words by which the sentence asserts nothing
+        self.reports = False  # True for a sentence that tells what a person says
         self.elsewhere: str | None = None  # words of the sentence by which another place than the viewer's is meant
         self.titled: tuple[Predicate, ...] = ()  # place that the last heading names
         self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'

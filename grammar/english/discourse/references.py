@@ -78,6 +78,8 @@ _LASTING = frozenset({"colour", "material", "contents", "ordinal", "rank"})
 """Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
 _OWN = frozenset({"size", "height", "length", "width", "thickness", "colour", "material", "shape"})
 """Dimensions of adjectives that are true of one thing of a kind."""
+_TELLING = frozenset({"with", "on", "inside", "under", "next_to", "left", "right", "behind", "in_front"})
+"""Relations in a relative clause that tell one of several things: *the table that holds the lamp*."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
 _COMPASS = frozenset({"north", "south", "east", "west"})
@@ -434,8 +436,8 @@ class References:
             named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
             if alone and phrase.plural and phrase.count is None and not named:
                 continue  # 'the drums' after 'the bass drum'
-            every = alone and phrase.determiner in ("each", "every") and entity.born < self.sentence
-            if every and any(dimension in _LASTING for dimension, _ in entity.adjectives):
+            every = phrase.determiner in ("each", "every") or any(a.rank is not None for a in phrase.adjectives)
+            if every and alone and entity.born < self.sentence and not _agreement(entity, phrase) and any(dimension in _LASTING for dimension, _ in entity.adjectives):
                 continue  # 'one on each square' after 'the white square'
             sized = any(a.dimension == "size" and a.degree is Degree.PLAIN for a in phrase.adjectives)
             other = phrase.head in GENERAL and entity.noun != phrase.head and sized
@@ -583,6 +585,16 @@ class References:
             if owned is not None:
                 owned.adjectives.add(("picked", f"of {owner}"))
                 return self.picked(owned, phrase)
+        for place in phrase.predicates:  # 'the table that holds the lamp' after 'two tables'
+            if phrase.determiner != "the" or phrase.plural or not phrase.head or not place.positive:
+                continue
+            if place.relation in _TELLING and len(place.arguments) == 1 and place.arguments[0].head:
+                tag = f"{place.relation} {place.reversed} {place.arguments[0].head}"
+                same = next((leaf for leaf in leaves if ("picked", tag) in leaf.adjectives), None)
+                same = same or next((leaf for leaf in leaves if not leaf.is_picked), None)
+                if same is not None:
+                    same.adjectives.add(("picked", tag))
+                    return self.picked(same, phrase)
         apart = any(p.degree is Degree.SUPERLATIVE and p.arguments for p in phrase.predicates)
         free = [leaf for leaf in leaves if not leaf.is_picked]
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
@@ -699,6 +711,8 @@ class References:
             return left_out
         if word in ("they", "both", "all", "each", "these", "those"):
             several = self._plural(relation, besides, word == "both")
+            if several is not None and word in ("these", "those") and relation is not None and not several.noun:
+                self.guesses.append((phrase.span, Guess.THOSE))  # 'next to these lies the spoon'
             if several is not None and word == "they" and relation is None and not self._is_fresh(several.itself):
                 self.guesses.append((phrase.span, Guess.THEY))
             return several

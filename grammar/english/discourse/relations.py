@@ -139,7 +139,7 @@ class Relations(Mentions):
         if relation == "inside" and self.how.positive and any(self._is_town(a) for a in predicate.arguments):
             self._is_not_here(subject)  # 'the knife is in London'
             return
-        degree = self.text[: predicate.span[0]].casefold().split()[-1:]
+        degree = self.text[self.references.start : predicate.span[0]].casefold().split()[-1:]
         if relation in ("near", "far") and degree in (["equally"], ["as"]):
             return  # 'equally far from the cross' compares, and says no distance
         if relation == "outside":
@@ -317,7 +317,7 @@ class Relations(Mentions):
         words = self.text[slice(*phrase.span)].split()
         named = bool(words) and not phrase.known and phrase.determiner is None and phrase.owner is None
         bare = named and not (phrase.adjectives or phrase.predicates or phrase.members or phrase.count)
-        after_in = self.text[: phrase.span[0]].casefold().split()[-1:] == ["in"]
+        after_in = self.text[self.references.start : phrase.span[0]].casefold().split()[-1:] == ["in"]
         return bare and after_in and all(word[0].isupper() and not word.isupper() for word in words)
 
     def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
@@ -578,7 +578,12 @@ class Relations(Mentions):
             same = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (last,)]
             if same and same[-1].arguments and same[-1].how.guesses & UNANCHORED:
                 last = same[-1].arguments[0]  # 'the bread plate above to the left, the glass above to the right'
-            further = self.text[: predicate.span[0]].rstrip().casefold().endswith(("further", "farther"))
+            further = (
+                self.text[self.references.start : predicate.span[0]]
+                .rstrip()
+                .casefold()
+                .endswith(("further", "farther"))
+            )
             here = before.sentence == self.how.sentence or further  # 'further to the right lie the tongs'
             here = here or (opposite and before.sentence == self.how.sentence - 1)  # 'the fork to the left of it. …'
             self.how = self._guessed(Guess.OF_THE_LAST if here else Guess.OF_EARLIER)

@@ -121,7 +121,7 @@ def _is_definition(inside: list[Chunk]) -> bool:
 
 
 def _without_second_names(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out one of two names of one thing between which a slash stands: *the fan/light*, *my cutting/work table*."""
+    """Leave out one of two names of one thing with a slash between them: *the fan/light*, *my cutting/work table*."""
     for i in range(1, len(chunks) - 1):
         first, slash, second = chunks[i - 1 : i + 2]
         joined = slash.type == "OR" and first.span[1] == slash.span[0] == slash.span[1] - 1 == second.span[0] - 1
@@ -210,7 +210,7 @@ def _is_exclamation(chunk: Chunk) -> bool:
 
 
 def _without_times(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out the time at the beginning of a sentence: *Before the run, check …*, *Once set, …*, *Once in the hall, …*."""
+    """Leave out the time at the beginning of a sentence: *Before the run, …*, *Once set, …*, *Once in the hall, …*."""
     start = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
     if [type_at(chunks, start), type_at(chunks, start + 2)] == ["SUB", "COMMA"] and chunks[start].value == "once":
         done = chunks[start + 1]
@@ -281,7 +281,7 @@ def _without_insertions_between_dashes(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _without_second_names, _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes, _without_openings,
-    _without_times,
+    _without_second_names, _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes,
+    _without_openings, _without_times,
 )  # fmt: skip
 """Rewritings that take out what stands apart, in their order."""

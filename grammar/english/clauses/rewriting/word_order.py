@@ -49,7 +49,7 @@ _FOUND_OR_PUT = frozenset(
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
-_REGIONS = frozenset({"corner", "middle", "centre", "center", "side", "half"})
+_REGIONS = frozenset({"corner", "middle", "centre", "center", "side"})
 """Nouns of regions, in or on which things are."""
 
 _HOLDING = frozenset({"have", "hold", "contain", "display", "feature", "house"})
@@ -314,7 +314,7 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *the corner of the tray holds a lamp* as *a lamp is in the corner of the tray*, and *fill the corner with …*.
+    """Return *the corner of the tray holds a lamp*, *fill the corner with …* as *a lamp is in the corner of the tray*.
 
     A region is where a thing is, and has nothing itself.
     """
@@ -343,7 +343,7 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
         things = chunks[first:end]
         if being is None or not things or {c.type for c in things} - {"NP", "AND"} or things[0].type != "NP":
             continue
-        inner = Relator(Preposition(*("on", "on") if chunk.value.head in ("side", "half") else ("in", "inside")))
+        inner = Relator(Preposition(*("on", "on") if chunk.value.head == "side" else ("in", "inside")))
         place = [Chunk("PREP", chunk.start, chunk.start, inner, (chunk.span[0], chunk.span[0])), *chunks[i:verb]]
         if being.type == "PUT":
             return [*chunks[: i - 1], being, *things, *place, *chunks[end:]]
@@ -352,8 +352,9 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_filled_regions, _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture, _without_resumed_subjects,
-    _with_existential_have, _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs,
-    _with_objects_first, _with_contact_clauses, without(_stranded), _with_places_before_verbs,
+    _with_filled_regions, _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture,
+    _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs, _with_relative_places,
+    _with_objects_after_verbs, _with_objects_first, _with_contact_clauses, without(_stranded),
+    _with_places_before_verbs,
 )  # fmt: skip
 """Rewritings that put clauses into plain order, one after the other."""
