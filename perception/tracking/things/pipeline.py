@@ -72,6 +72,9 @@ NEAR = 0.04
 MIN_ON = 0.7
 """Minimum share of the points of a thing inside the box of another one, from above, at which it lies on that one."""
 
+MIN_PLACES = 3
+"""Minimum number of places that must agree for a thing to be at rest, also where frames are far apart in time."""
+
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops by half."""
 
@@ -789,7 +792,7 @@ class Pipeline:
         self.agreement = agreement
         self._carried = []
         self._places.append((at, pose[:3, 3].copy()))
-        while self._places[0][0] < at - self.settings.still_for - 1e-6:
+        while len(self._places) > MIN_PLACES and self._places[0][0] < at - self.settings.still_for - 1e-6:
             self._places.popleft()
 
     def lost(self, state: State = "hidden") -> None:
@@ -831,7 +834,7 @@ class Pipeline:
         bool
             False as long as it has not been followed long enough.
         """
-        if len(self._places) < 3 or at - self._places[0][0] < 0.7 * self.settings.still_for:
+        if len(self._places) < MIN_PLACES or at - self._places[0][0] < 0.7 * self.settings.still_for:
             return False
         places = np.array([place for _, place in self._places])
         return bool(np.ptp(places, axis=0).max() < 2 * self.settings.still)
