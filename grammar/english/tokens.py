@@ -37,7 +37,11 @@ MAX_SENTENCE_LENGTH = 8000
 MAX_ABBREVIATION = 4
 """Number of letters of a word before a full stop and a number that is an abbreviation: *inv. 112*."""
 
+MAX_ASIDE_WORDS = 9
+"""Number of words of an aside in a verb: *do not, if you can avoid it, put it there*."""
+
 _PAIRED_DASHES = 2
+_AUXILIARIES = MODALS.keys() | {"do", "does", "did"}
 _DASHES = frozenset({"-", "\u2013", "\u2014"})
 _STRUCK = re.compile(r"~~[^~\n]+~~|(?<=\w)\[\d{1,3}\]|(?<=[\s:;,])\((?:[A-Za-z]|[ivx]{1,4}|\d{1,2})\)(?=\s)")
 _CODES = re.compile(
@@ -457,6 +461,28 @@ def _read_setups(words: list[Word]) -> None:
                 del words[i + 1]
         elif words[i].norm == "built-in" and words[i - 1].is_word and words[i + 1].norm in prepositions():
             del words[i]
+
+
+def _without_asides_in_verbs(words: list[Word]) -> None:
+    """Leave out what stands between commas in a verb: *do not, however, put it there*.
+
+    A place there stays if it is the only one: *do not, on the left, put a fork*.
+    """
+    for at in range(len(words) - 4, -1, -1):
+        start = at + 1 + (words[at + 1].norm in ("not", "never", "n't"))
+        if words[at].norm not in _AUXILIARIES or words[start].norm != ",":
+            continue
+        end = next((k for k in range(start + 1, len(words)) if not words[k].is_word), len(words))
+        verb = end + 1
+        while verb < len(words) and (words[verb].norm in ADVERBS or words[verb].norm == "be"):
+            verb += 1
+        form = verb_forms().get(words[verb].norm) if verb < len(words) else None
+        if end - start > MAX_ASIDE_WORDS or words[end : end + 1] == [] or words[end].norm != "," or form is None:
+            continue
+        later = any(word.norm in prepositions() for word in words[verb + 1 :])
+        ends_group = form.form == "base" or (words[verb - 1].norm == "be" and form.form in ("past", "participle"))
+        if ends_group and (words[start + 1].norm not in prepositions() or later):
+            del words[start : end + 1]
 
 
 def _without_settings(words: list[Word]) -> None:
@@ -976,6 +1002,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _without_entering(found)
     _without_set_aside(found)
     _read_setups(found)
+    _without_asides_in_verbs(found)
     _without_settings(found)
     _read_facing_commands(found)
     _read_fractions(found)

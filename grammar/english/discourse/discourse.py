@@ -606,7 +606,8 @@ class Discourse(Statements):
         known = self.references.earlier(replace(subject, determiner="the")) if subject.head else None
         inside = all(p.relation in ("on", "inside") for p in predicates)
         if known is None and subject.head and inside and last_word(subject.head) not in GENERAL:
-            self._absent(subject)
+            if not self.text[: subject.span[0]].rstrip().casefold().endswith((" so", " so that")):
+                self._absent(subject)  # unlike 'in a box, so that no juice drips on it'
             return
         if known is not None and last_word(subject.head) not in GENERAL:
             self.how = replace(self.how, positive=False)  # 'no glass stands to the left of it' after 'the glasses'

@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PARTS,
     PEOPLE,
     SUBSTANCES,
+    SUPPORTS,
     SURFACES,
     VESSELS,
     VIEWER_WORDS,
@@ -44,34 +45,6 @@ CONTAINING = frozenset({"contains", "contain", "containing"})
 
 HOLDING = frozenset({"holds", "hold", "holding", "filled", "full", "stuffed", "packed", "crammed", "stocked"}) | EMPTY
 """Words of clauses that say what a vessel holds: *it is filled with spoons*, *it is empty except for a spoon*."""
-
-SUPPORTS = frozenset(
-    [
-        "saucer",
-        "plate",
-        "tray",
-        "mat",
-        "coaster",
-        "napkin",
-        "board",
-        "cloth",
-        "stand",
-        "shelf",
-        "table",
-        "doily",
-        "tile",
-        "tier",
-        "platform",
-        "plinth",
-        "pedestal",
-        "easel",
-        "trivet",
-        "peg",
-        "hook",
-        "nail",
-        "hanger",
-    ]
-)
 
 
 _OUTER = frozenset({"top", "rim", "edge", "brim"})
@@ -210,6 +183,8 @@ class Relations(Mentions):
             self._add(f"none_{relation}", (subject,), ())  # 'the plate has nothing on it'
             return
         for phrase in predicate.arguments:
+            if predicate.reversed and phrase.head and phrase.owner is not None and phrase.owner.pronoun == "it":
+                phrase = replace(phrase, owner=None, determiner="the")  # 'on the mat, with its cable under it'
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
                 phrase = replace(phrase, head=others[-1].noun, pronoun=None, determiner="another")  # 'not in the one …'
             last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None

@@ -9,7 +9,7 @@ from deixis.grammar.english.confidence import UNJOINED, Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
 from deixis.grammar.english.discourse.mentions import SUPERLATIVES
 from deixis.grammar.english.discourse.references import POLES, Focus
-from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, SUPPORTS, Relations
+from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, Relations
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate, aimed
 from deixis.grammar.english.vocabulary.nouns import (
@@ -20,6 +20,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PARTS,
     PLACES_OF,
     SUBSTANCES,
+    SUPPORTS,
     SURFACES,
     VESSELS,
     VIEWER,

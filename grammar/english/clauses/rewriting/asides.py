@@ -393,6 +393,9 @@ def _examples(chunks: list[Chunk], at: int) -> Run | None:
     if not before.value.plural and not (word == "such as" and (apart or including)):
         return None
     general = last_word(before.value.head) in GENERAL
+    named = type_at(chunks, at - 2) in COMMANDS | {"AND", "COMMA"} and type_at(chunks, 0) in COMMANDS
+    bare = type_at(chunks, first + 1) == "NP" and chunks[first + 1].value.determiner is None
+    general = general or (named and bare and before.value.determiner is None and type_at(chunks, first + 2) == "PREP")
     if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in COMMANDS))):
         return None
     end, last = first + 1, 0

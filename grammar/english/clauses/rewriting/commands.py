@@ -30,6 +30,9 @@ _UNSURE = frozenset({"can", "could", "may", "might", "would"})
 _UNCONDITIONAL = frozenset({"before", "after", "because", "as", "so"})
 """Conjunctions of clauses that are not conditions."""
 
+_TIMES = word_set("before after while")
+"""Conjunctions whose participle has the subject of the main clause, or the reader."""
+
 _SERVING = word_set(
     "ensure allow help save keep simplify reduce minimize minimise protect improve free facilitate maximize maximise"
 )
@@ -71,6 +74,17 @@ def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
                 command = replace(chunk, type="PUT", value=replace(group, form="base"))
                 joint = replace(chunks[i - 1], type="CUT")
                 return [*chunks[: i - 1], joint, command, *_with_participles_of_commands(chunks[i + 1 :])]
+    return chunks
+
+
+def _with_participles_of_times(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *after covering the plate, put the lid on it* with a command: the things of the text do not cover it."""
+    for i in range(len(chunks) - 2):
+        group = chunks[i + 1].value
+        timed = chunks[i].type == "SUB" and chunks[i].value in _TIMES and chunks[i + 1].type == "TPART"
+        if timed and isinstance(group, VerbGroup) and group.form == "ing" and chunks[i + 2].type == "NP":
+            places = group.lemma in PLACING_VERBS | PUT_VERBS
+            chunks[i + 1] = replace(chunks[i + 1], type="PUT" if places else "DO", value=replace(group, form="base"))
     return chunks
 
 
@@ -284,6 +298,7 @@ def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
 REWRITES = (
     without(_particle), _with_wishes_as_statements, _with_companions_as_places, _with_aligned_parts,
     _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
-    without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands, _with_placements_as_commands,
+    _with_participles_of_times, without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands,
+    _with_placements_as_commands,
 )  # fmt: skip
 """Rewritings of commands, in their order."""

@@ -11,6 +11,7 @@ from deixis.grammar.english.clauses.rewriting.editing import (
     ENDS,
     PREDICATES,
     Run,
+    emptied,
     end_before,
     put_in,
     type_at,
@@ -296,6 +297,28 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_objects_first(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the tin with the buttons I keep at its left* as *the tin with the buttons is at its left*."""
+    for i in range(len(chunks) - 4):
+        if type_at(chunks, i - 1) not in ENDS or [type_at(chunks, i + k) for k in range(3)] != ["NP", "WITH", "NP"]:
+            continue
+        person, verb = i + 3, i + 4
+        placed = [type_at(chunks, person), type_at(chunks, verb)] in (["NP", "VERB"], ["NP", "TVERB"])
+        placed = placed and chunks[person].value.pronoun in ("me", "we") and not chunks[person].value.head
+        if not placed or chunks[verb].value.lemma not in _FOUND_OR_PUT or type_at(chunks, verb + 1) not in PREDICATES:
+            continue
+        if type_at(chunks, end_before(chunks, verb + 1, FINITE | BREAKS)) in FINITE:
+            continue  # 'the tin with the buttons I keep in it is red'
+        being = replace(chunks[verb].value, lemma="be", kind="be")
+        return [
+            *chunks[:person],
+            emptied(chunks[person]),
+            replace(chunks[verb], type="BE", value=being),
+            *chunks[verb + 1 :],
+        ]
+    return chunks
+
+
 def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
     found: list[Chunk] = []
@@ -368,7 +391,7 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
 REWRITES = (
     _with_filled_regions, _with_places_where, _with_placed_subjects, _with_verbs_after_places,
     _with_participles_of_posture, _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs,
-    _with_relative_places, _with_objects_after_verbs, _with_contact_clauses, without(_stranded),
-    _with_places_before_verbs,
+    _with_relative_places, _with_objects_after_verbs, _with_objects_first, _with_contact_clauses,
+    without(_stranded), _with_places_before_verbs,
 )  # fmt: skip
 """Rewritings that put clauses into plain order, one after the other."""
