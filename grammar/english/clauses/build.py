@@ -131,7 +131,7 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in predications
             )
-        predications = with_support(group, predications or ())
+        predications = with_support(group, _against_supports(group.lemma, predications or ()))
         return Built(
             "command", raws, (Verb(group, moved(group, predications, put.span) if predications else (), put.span),)
         )
@@ -720,6 +720,19 @@ def _with_contents(thing: NounPhrase, predications: tuple[Predication, ...] | No
         return predications  # 'lay the table with forks on the left'
     holds = replace(first[0], arguments=(replace(held, predicates=()),))
     return (Predication((holds, *held.predicates)),)
+
+
+def _against_supports(lemma: str, predications: tuple[Predication, ...]) -> tuple[Predication, ...]:
+    """Return *lean the picture in its frame against the wall* with the picture against the wall, and not its frame."""
+    last = predications[-1].predicates[-1:] if predications and lemma in ("lean", "prop", "rest") else ()
+    holder = last[0].arguments[-1] if last and last[0].arguments else None
+    against = tuple(p for p in holder.predicates if p.relation == "against") if holder is not None else ()
+    if holder is None or not against:
+        return predications
+    kept = replace(holder, predicates=tuple(p for p in holder.predicates if p not in against))
+    inner = replace(last[0], arguments=(*last[0].arguments[:-1], kept))
+    part = replace(predications[-1], predicates=(*predications[-1].predicates[:-1], inner, *against))
+    return (*predications[:-1], part)
 
 
 def _is_absolute(predicate: Predicate) -> bool:
