@@ -101,3 +101,26 @@ def test_its_after_with_is_of_the_subject(text: str, expected: list[str]) -> Non
 )
 def test_turned_clauses_give_their_facts(text: str, expected: str) -> None:
     assert expected in asserted(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Resist the urge to put the fork on the mat.", "The fork is often wrongly placed on the mat."],
+)
+def test_what_is_done_wrongly_is_not_asserted(text: str) -> None:
+    assert asserted(f"{text} The cup is on the saucer.") == ["on(cup, saucer)"]
+
+
+def test_a_move_ends_where_it_goes_to() -> None:
+    assert asserted("Move the fork from the mat to the plate.") == ["on(fork, plate)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("There is a jug containing wine on the shelf.", ["on(jug, shelf)", "inside(wine, jug)"]),
+        ("Lean the picture in its frame against the jug.", ["inside(picture, frame)", "against(picture, jug)"]),
+    ],
+)
+def test_participles_and_supports_stand_apart(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
