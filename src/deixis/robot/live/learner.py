@@ -18,7 +18,7 @@ from deixis.grammar.recall.questions import is_question
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.predicates import ACTS, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
+from deixis.memory.episodes.predicates import ACTS, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS, SAYS
 from deixis.memory.errors import MemoryBusyError, MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
@@ -35,8 +35,8 @@ from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
 from deixis.workflows.scenes.point import MIN_CONFIDENCE
 
-SAYS, DONE = "says", "done"
-"""Predicates: what the robot says, and that it has dealt with the whole story."""
+DONE = "done"
+"""Predicate: the robot has dealt with the whole story."""
 
 _WRONG = re.compile(
     r"\b(wrong|missing|mistakes?|correct)\b|^\W*(?:is|are)\b.*\blaid\b|\b(?:this|it|everything|all|table) right\b",

@@ -17,7 +17,7 @@ from deixis.grammar.utterances import Utterance
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add, Change, Finish
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
-from deixis.memory.episodes.predicates import SAID
+from deixis.memory.episodes.predicates import SAID, SAYS
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
@@ -26,7 +26,7 @@ from deixis.perception.tracking.frames.frame import Frame
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import UNNAMED
-from deixis.robot.live.learner import DONE, NOT_FOUND, NOT_SEEN, SAYS, Learner
+from deixis.robot.live.learner import DONE, NOT_FOUND, NOT_SEEN, Learner
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.run import live_robot
 from deixis.robot.live.senses import DROPPED, ENDED, NOTICED, TABLE, Senses
