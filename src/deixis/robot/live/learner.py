@@ -27,6 +27,7 @@ from deixis.reasoning.errors import NothingFoundError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
+from deixis.robot.kept import KeptElsewhere
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.senses import ENDED, MIN_DURATION, TABLE, WATCHED, named
@@ -324,6 +325,9 @@ class Learner(Module):
                 lambda: self._say(learned, at, board),
                 lambda: self._ask(at, board),
             )
+            return
+        if isinstance(result, KeptElsewhere):
+            self._say(f"I have noted where things are kept: {result}. That is not on this table.", at, board)
             return
         if left := [one.name for one in result if one.standing is Standing.EXPECTED]:
             self._say(f"I do not see it yet; I expect: {_listed(left)}.", at, board)
