@@ -102,7 +102,9 @@ def distinct(parts: Iterable[str]) -> list[str]:
 
 
 def _capital(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}" + ("" if text.endswith(("?", "!")) else ".")
+    """Return clauses as a sentence; an id such as ``t3`` at the beginning remains as it is."""
+    first = text[0] if definite(text.split()[0]) == text.split()[0] else text[0].upper()
+    return f"{first}{text[1:]}" + ("" if text.endswith(("?", "!")) else ".")
 
 
 def fact_words(found: Recall, fact: Recalled) -> str:
@@ -205,6 +207,10 @@ def definite(name: str) -> str:
 
 def _presence(found: Recall, facts: list[Recalled]) -> str:
     """Return when a person was seen or heard: *Ada was seen and heard from 12:00:01 to 12:03:05*."""
+    own = [
+        fact for fact in facts if fact.fluent.statement.predicate == SAID or fact.fluent.source.origin != Origin.SAID
+    ]
+    facts = own or facts  # what others said of a person counts only where nothing else is known
     acts = [fact.fluent for fact in facts if fact.fluent.statement.predicate != SAID]
     ways = ["seen"] * any(act.source.origin is not Origin.SAID for act in acts)
     ways += ["heard"] * (len(acts) < len(facts))

@@ -95,6 +95,7 @@ def test_hands_that_grip_do_not_point(memory: Path) -> None:
 @pytest.mark.parametrize(
     ("question", "words"),
     [
+        ("What happened to t1?", "t1 was there from"),
         ("What did Ada do?", "Ada moved t3 at"),
         ("What did Ben take away?", "Ben took t1 away at"),
         ("Who moved t3 first?", "Ada moved t3 at"),

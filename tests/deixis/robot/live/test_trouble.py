@@ -159,6 +159,27 @@ def test_a_full_disk_during_a_look_loses_no_thing_and_no_table(tmp_path: Path, m
     assert seen[0] == seen[1]
 
 
+def test_a_scene_that_a_full_disk_refuses_is_written_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from deixis.workflows.scenes import perceive
+
+    monkeypatch.setattr("deixis.robot.modules.RESTART_PAUSE", 0.001)
+    script, write, failures = tmp_path / "pair.layout", perceive.write_scene, iter([True, True, True])
+    script.write_text("layout pair\nfork left of plate\n", encoding="utf-8")
+
+    def full(*arguments: object) -> object:
+        if next(failures, False):
+            raise OSError(28, "No space left on device")
+        return write(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(perceive, "write_scene", full)
+    senses = Senses({"source": "simulator", "layout": str(script), "seed": 2, "rate": 0.5}, str(tmp_path))
+    with Blackboard.transient() as board:
+        lines = take_in(senses, board)
+        assert len(noted(board, TABLE)) == len(list(tmp_path.glob("*.scene.json"))) >= 2
+        assert not any("could not be used" in str(note) for note in noted(board, NOTICED))
+    assert len(lines) == 1 and "No space left on device" in lines[0]
+
+
 def told(board: Blackboard, learner: Learner, *statements: tuple[str, str, str], failures: int = 0) -> list[str | None]:
     """Give statements to a learner as the runtime does, and return what it says."""
     own = FullDisk(board, learner, failures)

@@ -60,7 +60,7 @@ def board() -> Iterator[Blackboard]:
 
 UNSEEN_MOVE = "who moved the fork at 11:20:00 was not seen"
 ADA_MOVED = "Ada moved the fork at 11:10:00 (seen, certainty 0.95)"
-ADA_HERE = "from 11:05:00 to 11:10:00"
+ADA_HERE = "at 11:10:00"
 BEN_TOOK = "Ben took the cup away at 11:30:00 (seen, certainty 0.95)"
 
 
