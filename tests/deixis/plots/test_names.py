@@ -5,6 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from deixis.perception.scene import PerceivedObject, Scene
+from deixis.plots.arrows import arrow_path
 from deixis.plots.figure import dress_table, new_figure
 from deixis.plots.names import write_names
 from deixis.plots.placement import MANY, crosses
@@ -73,7 +74,8 @@ def test_a_word_covers_neither_end_of_a_short_arrow() -> None:
     axes.set_xlim(0, 10)
     axes.set_ylim(0, 10)
     arrow = ((5.0, 5.0), (5.2, 4.8))
-    write_names(figure, axes, [], words=[("above", arrow)])
+    path = arrow_path(arrow)
+    write_names(figure, axes, [], arrows=[path], words=[("above", path)])
     (word,) = axes.texts
     extent = word.get_window_extent()
     assert not any(extent.contains(*axes.transData.transform(end)) for end in arrow)
