@@ -63,7 +63,7 @@ def test_a_query_that_is_answered_in_time(memory: Path) -> None:
         (("reason", "--engine", "hermit"), "inf"),  # a process of Java, which takes far longer
     ],
 )
-def test_limits_beyond_those_of_the_system_are_no_limits(memory: Path, command: tuple[str, ...], limit: str) -> None:
+def test_limits_beyond_those_of_the_system_do_not_limit(memory: Path, command: tuple[str, ...], limit: str) -> None:
     code, _, err = deixis(*command, "--memory", memory, "--time-limit", limit)
     assert (code, err) == (0, "")
 
