@@ -440,7 +440,9 @@ def _pieces(
     sigma = rising.noise * view.distance[chosen] ** 2
     painted = None if colours is None else colours[table.view.places[chosen]]
     near = renumbered(neighbours, chosen, number)
-    surface = surface_of(view.points[chosen], painted, near, sigma, view.eye, settings.surface)
+    organised = table.view.organised
+    pixels = None if organised is None else np.divmod(table.view.places[chosen], organised[1])
+    surface = surface_of(view.points[chosen], painted, near, sigma, view.eye, settings.surface, pixels)
     found = segments(surface, settings)
     counts = np.bincount(found)
     within = np.bincount(found, table.top.is_below[chosen]) / counts

@@ -483,7 +483,7 @@ class Assembly:
             denied = tuple(replace(p, positive=not p.positive) for p in phrase.predicates)
             phrase = replace(phrase, negated=False, predicates=denied)
         more = (*noun.extra, *(p for part in predications for p in part.predicates))
-        if self.clauses and self.text[: span[0]].rstrip().casefold().endswith("because"):
+        if self.clauses and self.text[self.raw.start : span[0]].rstrip().casefold().endswith("because"):
             misunderstood(span, "a reason without a verb does not say where something is")
             return  # 'because the postman trips over it'
         if self.asks:
@@ -766,7 +766,9 @@ class Assembly:
     def _added_about(self, phrase: NounPhrase) -> tuple[Predicate, ...]:
         """Return what a relative clause after a comma says: *I love the clock, which hangs over the door*."""
         predicates = phrase.predicates
-        if not predicates or not self.text[: predicates[0].span[0]].rstrip().endswith((", which", ", who")):
+        if not predicates or not self.text[self.raw.start : predicates[0].span[0]].rstrip().endswith(
+            (", which", ", who")
+        ):
             return ()
         return predicates
 

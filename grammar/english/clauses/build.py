@@ -347,6 +347,7 @@ class Builder(Transformer[Any, Built]):
     def complement(self, chunk: Chunk, of: Chunk, thing: Noun) -> NounPhrase:
         """Return *the end of the shelf* and *a pair of boots*."""
         phrase: NounPhrase = chunk.value
+        said = thing.phrase.predicates
         thing, its = _of_the_subject(thing)
         inner = thing.phrase
         on_it = tuple(p for p in inner.predicates if any(a.pronoun in ("it", "they") for a in p.arguments))
@@ -367,6 +368,10 @@ class Builder(Transformer[Any, Built]):
             return replace(inner, determiner=phrase.determiner if phrase.determiner != "each" else "the", span=span)
         if not phrase.head and phrase.count is not None and phrase.determiner == "a":  # 'a pair of boots'
             return replace(inner, count=phrase.count, plural=True, span=union(phrase.span, inner.span))
+        bare = inner.determiner is None and inner.owner is None and inner.count is None and inner.pronoun is None
+        bare = bare and all(p.positive for p in inner.predicates)
+        if bare and inner.predicates and phrase.head and not is_place(phrase) and last_word(phrase.head) not in PARTS:
+            inner, its = replace(inner, predicates=()), said  # 'a glass of water on the table'
         return replace(
             phrase, of=inner, span=union(phrase.span, inner.span), predicates=(*phrase.predicates, *thing.extra, *its)
         )
@@ -875,6 +880,8 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     phrase = noun.phrase
     last = phrase.predicates[-1] if phrase.predicates else None
     part = last.subject_part if last is not None else None
+    if part is None and last is not None and last.reversed and last.of_one:
+        part = last.arguments[0]  # 'on the mat with its cable beside it'
     if last is None or part is None:
         return noun, ()
     own = part.owner is not None and part.owner.pronoun in ("it", "they")

@@ -15,7 +15,16 @@ from deixis.grammar.english.tree import (
     Span,
     aimed,
 )
-from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    AIMED_PARTS,
+    GAPS,
+    HOLDERS,
+    PARTS,
+    SUPPORTS,
+    SURFACES,
+    VESSELS,
+    last_word,
+)
 from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
@@ -344,7 +353,7 @@ def destination(predicate: Predicate) -> Predicate:
     if predicate.relation != "to" or not predicate.arguments:
         return predicate
     noun = last_word(predicate.arguments[0].head)
-    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
+    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES | SUPPORTS else "at"
     return replace(predicate, relation=relation)
 
 

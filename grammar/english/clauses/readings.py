@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from deixis.grammar.english.chunking.chunk import Chunk
+from deixis.grammar.english.clauses.joints import end_of_list
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence, Span
 
@@ -52,6 +53,8 @@ def _in_list(chunks: list[Chunk], at: int) -> bool:
     first = last = at
     while types[max(0, first - 2) : first] == ["COMMA", "NP"]:
         first -= 2
+    if any(end_of_list(chunks, i) > at for i in range(at) if types[i] == "NP"):
+        return True
     while types[last + 2 : last + 4] == ["COMMA", "NP"]:
         last += 2
     last += types[last + 2 : last + 4] == ["COMMA", "AND"]

@@ -173,7 +173,7 @@ FRAMED = re.compile(
 """Beginning of a sentence about another world than the one on the table: *in theory*, *the moment it is …*."""
 SELDOM = re.compile(
     r"(?:\bnot|n['\u2019]t)\s+(?:always|usually|normally|generally|often|necessarily|every\s+day|all\s+the\s+time)\b|"
-    r"(?:^|,)\s*(?:very\s+)?few\s|\b(?:scarcely|hardly)\s+(?:lies?|stands?|sits?|hangs?|belongs?)\b|\bexcepted\b",
+    r"(?<!\ba\s)(?<!\bthe\s)(?<!\bthese\s)(?<!\blast\s)(?<!\bfirst\s)(?<!\bnext\s)(?<!\bevery\s)\bfew\s|\b(?:scarcely|hardly)\s+(?:lies?|stands?|sits?|hangs?|belongs?)\b|\bexcepted\b",
     re.IGNORECASE,
 )
 """Words by which something is so at times, or of some things."""

@@ -293,7 +293,7 @@ IDIOMS = tuple(
         "from above",
         "seen from above",
         "face up",
-        *("half way up", "halfway up", "half way down", "halfway down", "part way up"),
+        "part way up",
         "right side up",
         "right way up",
         "the right way up",

@@ -60,6 +60,16 @@ def test_moved_thing_keeps_its_id_and_is_followed() -> None:
     assert not now.things[1].moving and now.things[1].since > 1.0 > now.things[0].since
 
 
+@pytest.mark.parametrize("rate", [2.0, 5.0])
+def test_moved_thing_rests_at_low_frame_rates(rate: float) -> None:
+    story = film([PLATE, MUG], [Rest(0.5), Move("mug", 0.1, -0.15), Rest(3.0)])
+    with Tracker(HALF) as tracker:
+        for frame in story.frames(rate, scale=0.4):
+            now = tracker.update(frame.cloud, frame.at)
+    assert [thing.moving for thing in now.things] == [False, False]
+    assert now.things[1].since > 1.0
+
+
 def test_hidden_thing_is_known_for_two_seconds() -> None:
     story = followed([PassOver(0.12, 0.2)], rate=5)
     states = [{thing.id: thing.state for thing in now.things} for _, now in story]

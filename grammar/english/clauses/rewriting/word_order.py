@@ -4,10 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.places import is_place
-from deixis.grammar.english.clauses.rewriting.editing import ENDS, PREDICATES, Run, end_before, put_in, type_at, without
+from deixis.grammar.english.clauses.rewriting.editing import (
+    BREAKS,
+    ENDS,
+    PREDICATES,
+    Run,
+    emptied,
+    end_before,
+    put_in,
+    type_at,
+    without,
+    word_of,
+)
 from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.relation_words import Preposition
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 
 _FOUND_OR_PUT = frozenset(
@@ -36,6 +48,15 @@ _FOUND_OR_PUT = frozenset(
     }
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
+
+_REGIONS = frozenset({"corner", "middle", "centre", "center", "side"})
+"""Nouns of regions, in or on which things are."""
+
+_HOLDING = frozenset({"have", "hold", "contain", "display", "feature", "house"})
+"""Verbs of what is in a region."""
+
+_FILLING = frozenset({"fill", "occupy", "take", "decorate"})
+"""Participles of what is in a region."""
 
 _PLACEMENTS = frozenset({"placement", "position", "location"})
 """Nouns for the place of a thing, of which a place says where the thing is."""
@@ -239,6 +260,28 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_objects_first(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the tin with the buttons I keep at its left* as *the tin with the buttons is at its left*."""
+    for i in range(len(chunks) - 4):
+        if type_at(chunks, i - 1) not in ENDS or [type_at(chunks, i + k) for k in range(3)] != ["NP", "WITH", "NP"]:
+            continue
+        person, verb = i + 3, i + 4
+        placed = [type_at(chunks, person), type_at(chunks, verb)] in (["NP", "VERB"], ["NP", "TVERB"])
+        placed = placed and chunks[person].value.pronoun in ("me", "we") and not chunks[person].value.head
+        if not placed or chunks[verb].value.lemma not in _FOUND_OR_PUT or type_at(chunks, verb + 1) not in PREDICATES:
+            continue
+        if type_at(chunks, end_before(chunks, verb + 1, FINITE | BREAKS)) in FINITE:
+            continue  # 'the tin with the buttons I keep in it is red'
+        being = replace(chunks[verb].value, lemma="be", kind="be")
+        return [
+            *chunks[:person],
+            emptied(chunks[person]),
+            replace(chunks[verb], type="BE", value=being),
+            *chunks[verb + 1 :],
+        ]
+    return chunks
+
+
 def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
     found: list[Chunk] = []
@@ -270,9 +313,48 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the corner of the tray holds a lamp*, *fill the corner with …* as *a lamp is in the corner of the tray*.
+
+    A region is where a thing is, and has nothing itself.
+    """
+    for i, chunk in enumerate(chunks):
+        if (
+            chunk.type != "NP"
+            or chunk.value.head not in _REGIONS
+            or type_at(chunks, i - 1) not in ENDS | {"AND", "PUT"}
+        ):
+            continue
+        verb = i + 1 + 2 * ([type_at(chunks, i + 1), type_at(chunks, i + 2)] == ["OF", "NP"])
+        if chunk.value.head == "side" and verb > i + 1:
+            continue  # 'the left side of the jar has a label'
+        group = chunks[verb].value if type_at(chunks, verb) in FINITE else None
+        first, being = verb + 1, None
+        if type_at(chunks, i - 1) == "PUT" and chunks[i - 1].value.lemma == "fill" and type_at(chunks, verb) == "WITH":
+            being = replace(chunks[i - 1], value=replace(chunks[i - 1].value, lemma="place", kind="posture"))
+        elif isinstance(group, VerbGroup) and type_at(chunks, verb) == "TVERB" and group.lemma in _HOLDING:
+            being = replace(chunks[verb], type="BE", value=replace(group, lemma="be", kind="be"))
+        elif isinstance(group, VerbGroup) and type_at(chunks, verb) == "BE":
+            done = type_at(chunks, first) == "PART" and type_at(chunks, first + 1) in ("PREP", "WITH")
+            done = done and word_of(chunks[first + 1]) in ("by", "with") and chunks[first].value.lemma in _FILLING
+            first += 2 if done else type_at(chunks, first) == "WITH"
+            being = chunks[verb] if first > verb + 1 else None
+        end = end_before(chunks, first, BREAKS)
+        things = chunks[first:end]
+        if being is None or not things or {c.type for c in things} - {"NP", "AND"} or things[0].type != "NP":
+            continue
+        inner = Relator(Preposition(*("on", "on") if chunk.value.head == "side" else ("in", "inside")))
+        place = [Chunk("PREP", chunk.start, chunk.start, inner, (chunk.span[0], chunk.span[0])), *chunks[i:verb]]
+        if being.type == "PUT":
+            return [*chunks[: i - 1], being, *things, *place, *chunks[end:]]
+        return [*chunks[:i], *things, being, *place, *chunks[end:]]
+    return chunks
+
+
 REWRITES = (
-    _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture, _without_resumed_subjects,
-    _with_existential_have, _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs,
-    _with_contact_clauses, without(_stranded), _with_places_before_verbs,
+    _with_filled_regions, _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture,
+    _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs, _with_relative_places,
+    _with_objects_after_verbs, _with_objects_first, _with_contact_clauses, without(_stranded),
+    _with_places_before_verbs,
 )  # fmt: skip
 """Rewritings that put clauses into plain order, one after the other."""

@@ -89,6 +89,10 @@ HANDLING_SECONDS = 1.5
 LATE_HAND_SECONDS = 0.3
 """Time in seconds by which the hand may still, or already, be at the thing on the other side of that time."""
 
+REACH_SECONDS = 0.5
+"""Longest time in seconds from the end of a gesture to the time when the hand may be at the thing, for the gesture to
+be the slow end of a reach rather than pointing."""
+
 BRINGING_SCALE = 0.5
 """Time in seconds by which things that come later, or earlier, than another one are e times less likely the announced
 thing."""
@@ -866,8 +870,8 @@ def named(text: str) -> tuple[str | None, SpokenName | None]:
 
 
 def _overlap(gesture: Gesture, contacts: Iterable[Contact]) -> bool:
-    """Return whether a gesture was held while a hand may have been at a thing."""
-    return any(gesture.start <= each.finish and gesture.finish >= each.start for each in contacts)
+    """Return whether a gesture was held while a hand may have been at a thing, or just before that."""
+    return any(gesture.start <= each.finish and gesture.finish >= each.start - REACH_SECONDS for each in contacts)
 
 
 def _required(frame: NDArray[np.float64] | None) -> NDArray[np.float64]:

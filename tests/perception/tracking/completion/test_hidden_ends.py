@@ -133,7 +133,10 @@ def test_report_has_the_supposed_length_and_its_spread() -> None:
 def test_end_that_was_seen_is_not_supposed_again() -> None:
     knife = box_of(*KNIFE, 1, 0.01)
     assert knife.unseen_ends((0.0, 0.08)) == (0.0, 0.08)
-    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.0), "the first end was seen before, the other one is seen now"
+    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.08), "the first end was seen before, the other one once only"
+    assert knife.unseen_ends((0.05, 0.07)) == (0.0, 0.07)
+    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.07)
+    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.0), "two views in a row show it"
     assert knife.unseen_ends((0.05, 0.08)) == (0.0, 0.0)
 
 
