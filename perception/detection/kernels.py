@@ -21,6 +21,7 @@ _BUCKET_COST = 1 / 16
 _STRIP = 32
 """Number of pixels of a row whose neighbourhoods are summed at once."""
 
+
 @njit(cache=True, nogil=True, fastmath=True)
 def support(x, y, z, tolerance, planes):  # type: ignore[no-untyped-def]
     """Return the support of each plane (t, 4), normal and offset, shape (t,).
