@@ -345,7 +345,7 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
 
 
-_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ"}
+_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ", "LJ"}
 _ORDERS = frozenset({"command", "search", "other"})
 """Shapes of commands, which show by their verb where they begin."""
 

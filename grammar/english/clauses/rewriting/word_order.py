@@ -53,6 +53,9 @@ _FOUND_OR_PUT = frozenset(
 _REGIONS = frozenset({"corner", "middle", "centre", "center", "side"})
 """Nouns of regions, in or on which things are."""
 
+_ORDERS = frozenset({"order", "sequence", "arrangement", "line-up"})
+"""Nouns of the way in which things follow one another."""
+
 _HOLDING = frozenset({"have", "hold", "contain", "display", "feature", "house"})
 """Verbs of what is in a region."""
 
@@ -319,6 +322,20 @@ def _with_objects_first(chunks: list[Chunk]) -> list[Chunk]:
     return chunks
 
 
+def _with_orders(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the order from left to right is fork, plate, knife* as *from left to right: fork, plate, knife*."""
+    for i, chunk in enumerate(chunks[:-3]):
+        if chunk.type != "NP" or chunk.value.head not in _ORDERS or type_at(chunks, i - 1) not in ENDS | {"COMMA"}:
+            continue
+        after = [type_at(chunks, i + k) for k in (1, 2, 3)] == ["ADV", "BE", "NP"]
+        before = [type_at(chunks, i + k) for k in (-2, -1, 1, 2)] == ["ADV", "COMMA", "BE", "NP"]
+        way = chunks[i + 1 if after else i - 2] if after or before else None
+        if way is not None and way.value.preposition.relation == "row":
+            verb = i + 2 if after else i + 1
+            return [*chunks[: i if after else i - 2], way, put_in("COLON", chunks[verb]), *chunks[verb + 1 :]]
+    return chunks
+
+
 def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
     found: list[Chunk] = []
@@ -389,9 +406,16 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
+<<<<<<< HEAD
     _with_filled_regions, _with_places_where, _with_placed_subjects, _with_verbs_after_places,
     _with_participles_of_posture, _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs,
     _with_relative_places, _with_objects_after_verbs, _with_objects_first, _with_contact_clauses,
     without(_stranded), _with_places_before_verbs,
+=======
+    _with_orders, _with_filled_regions, _with_places_where, _with_placed_subjects, _with_verbs_after_places,
+    _with_participles_of_posture, _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs,
+    _with_relative_places, _with_objects_after_verbs, _with_objects_first, _with_contact_clauses, without(_stranded),
+    _with_places_before_verbs,
+>>>>>>> origin/main
 )  # fmt: skip
 """Rewritings that put clauses into plain order, one after the other."""
