@@ -110,7 +110,7 @@ class ModifierFinder(NounFinder):
                 i += 1
                 continue
             if found and norm in ("and", ",", "/", "or", "but") and self._joins_adjectives(i):
-                choice = choice or norm in ("/", "or")
+                choice = choice or norm == "or"
                 i += 1
                 continue
             if not self._modifies(i, determined or bool(found)):

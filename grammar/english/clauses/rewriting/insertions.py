@@ -121,7 +121,10 @@ def _is_definition(inside: list[Chunk]) -> bool:
 
 
 def _without_second_names(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out one of two names of one thing with a slash between them: *the fan/light*, *my cutting/work table*."""
+    """Leave out the first of two names of one thing with a slash between them: *my cutting/work table*.
+
+    Two names of known things (*the table/desk*) stay a choice.
+    """
     for i in range(1, len(chunks) - 1):
         first, slash, second = chunks[i - 1 : i + 2]
         joined = slash.type == "OR" and first.span[1] == slash.span[0] == slash.span[1] - 1 == second.span[0] - 1
@@ -130,9 +133,10 @@ def _without_second_names(chunks: list[Chunk]) -> list[Chunk]:
         one, other = first.value, second.value
         single = bool(one.head and other.head) and not (one.plural or other.plural or one.members or other.members)
         named = single and (one.determiner in ("the", "a", "an") or one.owner is not None) and other.determiner is None
-        if named and other.owner is None:
-            longer = len(other.head.split()) > len(one.head.split())  # 'a coffee/side table'
-            kept = replace(one, head=other.head, known=other.known) if longer else one
+        longer = len(other.head.split()) > len(one.head.split())
+        same = longer and (not one.known or last_word(one.head) == last_word(other.head))  # 'a cutting/work table'
+        if named and same and other.owner is None:
+            kept = replace(one, head=other.head, known=other.known)
             first = Chunk("NP", first.start, second.end, kept, (first.span[0], second.span[1]))
             return _without_second_names([*chunks[: i - 1], first, *chunks[i + 2 :]])
     return chunks
