@@ -12,8 +12,14 @@ from numba import njit
 _BLOCK = 1024
 """Number of points in a block of a loop over planes, so that they stay in the fastest cache."""
 
-_SETTLED = -2
-"""Position in the heap of a point whose path is final."""
+_BUCKETS = 1024
+"""Number of buckets for paths of similar cost, a power of two."""
+
+_BUCKET_COST = 1 / 16
+"""Range of the costs in a bucket, below that of most steps."""
+
+_STRIP = 32
+"""Number of pixels of a row whose neighbourhoods are summed at once."""
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -247,6 +253,84 @@ def planes(points, neighbours, radius, jump, eye, most):  # type: ignore[no-unty
         middles[i, 0], middles[i, 1], middles[i, 2] = x, y, z
         moments[0, i], moments[1, i], moments[2, i] = xx / tail - x * x, xy / tail - x * y, xz / tail - x * z
         moments[3, i], moments[4, i], moments[5, i] = yy / tail - y * y, yz / tail - y * z, zz / tail - z * z
+    return _onto_planes(points, middles, moments, eye)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def planes_in_image(points, row, column, radius, reach, eye, steps):  # type: ignore[no-untyped-def]
+    """Fit a plane around each point (n, 3) of an image, and return normals and moved points as ``planes`` does.
+
+    A plane is fitted to the points within ``radius`` (n,) at the pixels around that of the point. ``row`` and
+    ``column`` (n,) are in the order of the rows. ``steps`` (s, 2), rows and columns, leads to these pixels, the nearest
+    first, and ``reach`` (n,) is their maximum distance in pixels.
+
+    Notes
+    -----
+    The sums over the neighbourhoods of a strip of a row are made at once, pixel by pixel of the neighbourhood, so that
+    the processor adds several at a time. Points on the surface within the radius are nearly always those that paths
+    from neighbour to neighbour reach.
+    """
+    n = len(points)
+    around = np.abs(steps).max()
+    low = (row.min() - around, column.min() - around)
+    shape = (row.max() - low[0] + around + 1, column.max() - low[1] + around + _STRIP)
+    image = np.full((3, shape[0], shape[1]), 1e9)  # of pixels without a point, which are out of reach
+    for i in range(n):
+        for axis in range(3):
+            image[axis, row[i] - low[0], column[i] - low[1]] = points[i, axis]
+    middles, moments = np.empty((n, 3)), np.empty((6, n))
+    sums, squares = np.empty((10, _STRIP)), np.empty(_STRIP)
+    count, sx, sy, sz = sums[0], sums[1], sums[2], sums[3]
+    sxx, sxy, sxz, syy, syz, szz = sums[4], sums[5], sums[6], sums[7], sums[8], sums[9]
+    start = 0
+    while start < n:
+        end, first, farthest = start, column[start], 0.0
+        squares[:], sums[:] = -1.0, 0.0
+        while end < n and row[end] == row[start] and column[end] < first + _STRIP:
+            squares[column[end] - first] = radius[end] * radius[end]
+            farthest = max(farthest, reach[end])
+            end += 1
+        width, r, c = column[end - 1] - first + 1, row[start] - low[0], first - low[1]
+        x, y, z = image[0, r, c : c + _STRIP], image[1, r, c : c + _STRIP], image[2, r, c : c + _STRIP]
+        for step in range(len(steps)):
+            down, right = steps[step, 0], steps[step, 1]
+            if down * down + right * right > farthest * farthest:
+                break
+            u = image[0, r + down, c + right : c + right + _STRIP]
+            v = image[1, r + down, c + right : c + right + _STRIP]
+            w = image[2, r + down, c + right : c + right + _STRIP]
+            for k in range(width):
+                dx, dy, dz = u[k] - x[k], v[k] - y[k], w[k] - z[k]
+                near = dx * dx + dy * dy + dz * dz <= squares[k]
+                dx, dy, dz = dx if near else 0.0, dy if near else 0.0, dz if near else 0.0
+                count[k] += 1.0 if near else 0.0
+                sx[k] += dx
+                sy[k] += dy
+                sz[k] += dz
+                sxx[k] += dx * dx
+                sxy[k] += dx * dy
+                sxz[k] += dx * dz
+                syy[k] += dy * dy
+                syz[k] += dy * dz
+                szz[k] += dz * dz
+        for i in range(start, end):
+            k = column[i] - first
+            mx, my, mz = sx[k] / count[k], sy[k] / count[k], sz[k] / count[k]
+            middles[i, 0], middles[i, 1], middles[i, 2] = mx, my, mz
+            moments[0, i], moments[1, i] = sxx[k] / count[k] - mx * mx, sxy[k] / count[k] - mx * my
+            moments[2, i], moments[3, i] = sxz[k] / count[k] - mx * mz, syy[k] / count[k] - my * my
+            moments[4, i], moments[5, i] = syz[k] / count[k] - my * mz, szz[k] / count[k] - mz * mz
+        start = end
+    return _onto_planes(points, middles, moments, eye)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _onto_planes(points, middles, moments, eye):  # type: ignore[no-untyped-def]
+    """Return the normals (n, 3) of planes, towards the ``eye`` (3,), and points (n, 3) moved onto the planes (n, 3).
+
+    A plane has a middle (n, 3), relative to its point, and six second moments (6, n).
+    """
+    n = len(points)
     normals, smooth = least_axes(moments), np.empty((n, 3))
     for i in range(n):
         towards, off = 0.0, 0.0
@@ -518,78 +602,95 @@ def grow(seeds, spacing, costs, points, smooth, normals, colours, neighbours, ju
 
     Notes
     -----
-    The method is that of E. W. Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1,
-    1959. A node of the heap has four children. The heap holds a point at most once, with its cost.
+    The method is that of U. Meyer and P. Sanders, "Delta-stepping: a parallelizable shortest path algorithm", Journal
+    of Algorithms 49, 2003, on one processor. Points wait in buckets of similar cost. A bucket keeps the points in the
+    order in which paths reach them, near each other in space, so that the processor finds them in its cache; a heap
+    mixes them. For the same reason, the costs of all steps are computed before, in the order of the points. A point
+    whose cost falls after it left its bucket waits again.
     """
-    n = len(smooth)
+    n, m = neighbours.shape
+    step_costs = _step_costs(spacing, costs, points, smooth, normals, colours, neighbours, jump)
     of, cost = np.full(n, -1, np.int32), np.full(n, np.inf)
-    heap, keys, place, size = np.empty(n, np.int32), np.empty(n), np.full(n, -1, np.int32), len(seeds)
+    first = np.full(_BUCKETS, -1, np.int32)  # of the doubly linked list of each bucket
+    bucket, before, after = np.full(n, -1, np.int32), np.empty(n, np.int32), np.empty(n, np.int32)
     for number in range(len(seeds)):
         p = seeds[number]
-        of[p], cost[p], heap[number], keys[number], place[p] = number, 0.0, p, 0.0, number
-    following, start = len(seeds), 0
+        of[p], cost[p] = number, 0.0
+        _put(p, 0, first, bucket, before, after)
+    following, start, waiting, now = len(seeds), 0, len(seeds), 0
     while True:
-        while size:
-            p, so_far, size = heap[0], keys[0], size - 1
-            place[p] = _SETTLED
-            if size:
-                _sink(heap[size], keys[size], heap, keys, place, size)
-            reach = jump[p] * jump[p]
-            for q in neighbours[p]:
-                if q >= 0 and place[q] != _SETTLED and squared(points, p, q) <= reach:
-                    total = so_far + _step_cost(smooth, normals, colours, p, q, spacing, costs)
-                    if total < cost[q]:
-                        of[q], cost[q] = of[p], total
-                        if place[q] < 0:
-                            place[q], size = size, size + 1
-                        _rise(q, total, heap, keys, place)
+        while waiting:
+            p = first[now % _BUCKETS]
+            if p < 0:
+                now += 1
+                continue
+            _take(p, first, bucket, before, after)
+            waiting -= 1
+            for k in range(m):
+                total = cost[p] + step_costs[p, k]
+                if total < np.inf and total < cost[neighbours[p, k]]:
+                    q = neighbours[p, k]
+                    of[q], cost[q] = of[p], total
+                    place = min(max(int(total / _BUCKET_COST), now), now + _BUCKETS - 1) % _BUCKETS
+                    if place != bucket[q]:
+                        if bucket[q] >= 0:
+                            _take(q, first, bucket, before, after)
+                            waiting -= 1
+                        _put(q, place, first, bucket, before, after)
+                        waiting += 1
         while start < n and of[start] >= 0:
             start += 1
         if start == n:
             return of
-        of[start], cost[start], heap[0], keys[0], place[start], size = following, 0.0, start, 0.0, 0, 1
+        of[start], cost[start], waiting, now = following, 0.0, 1, 0
+        _put(start, 0, first, bucket, before, after)
         following += 1
 
 
 @njit(cache=True, nogil=True)
-def _rise(p, key, heap, keys, place):  # type: ignore[no-untyped-def]
-    """Move a point with a smaller key up in the heap."""
-    i = place[p]
-    while i and keys[(i - 1) // 4] > key:
-        above = (i - 1) // 4
-        heap[i], keys[i] = heap[above], keys[above]
-        place[heap[i]] = i
-        i = above
-    heap[i], keys[i], place[p] = p, key, i
+def _put(p, place, first, bucket, before, after):  # type: ignore[no-untyped-def]
+    """Insert a point at the head of the list of a bucket."""
+    bucket[p], before[p], after[p] = place, -1, first[place]
+    if first[place] >= 0:
+        before[first[place]] = p
+    first[place] = p
 
 
 @njit(cache=True, nogil=True)
-def _sink(p, key, heap, keys, place, size):  # type: ignore[no-untyped-def]
-    """Insert a point at the top of the heap, and move it down."""
-    i = 0
-    while 4 * i + 1 < size:
-        child = 4 * i + 1
-        for other in range(child + 1, min(child + 4, size)):
-            if keys[other] < keys[child]:
-                child = other
-        if keys[child] >= key:
-            break
-        heap[i], keys[i] = heap[child], keys[child]
-        place[heap[i]] = i
-        i = child
-    heap[i], keys[i], place[p] = p, key, i
+def _take(p, first, bucket, before, after):  # type: ignore[no-untyped-def]
+    """Remove a point from the list of its bucket."""
+    if before[p] >= 0:
+        after[before[p]] = after[p]
+    else:
+        first[bucket[p]] = after[p]
+    if after[p] >= 0:
+        before[after[p]] = before[p]
+    bucket[p] = -1
 
 
-@njit(cache=True, nogil=True)
-def _step_cost(smooth, normals, colours, p, q, spacing, costs):  # type: ignore[no-untyped-def]
-    """Return the cost of a path from a point to its neighbour."""
+@njit(cache=True, nogil=True, error_model="numpy")
+def _step_costs(spacing, costs, points, smooth, normals, colours, neighbours, jump):  # type: ignore[no-untyped-def]
+    """Return the cost of a path from each point to each of its neighbours, shape (n, k); infinite beyond a jump."""
+    n, m = neighbours.shape
     turn_cost, step_cost, colour_cost, colour_noise = costs
-    turned, tint, step, way = 0.0, 0.0, 0.0, 0.0
-    for axis in range(3):
-        turned += (normals[p, axis] - normals[q, axis]) ** 2
-        tint += (colours[p, axis] - colours[q, axis]) ** 2
-        ahead = smooth[q, axis] - smooth[p, axis]
-        way += ahead * ahead
-        step += ahead * (normals[p, axis] + normals[q, axis]) / 2
-    colour = colour_cost * max(0.0, tint**0.5 - colour_noise)
-    return way**0.5 / spacing + turn_cost * turned**0.5 + step_cost * abs(step) + colour
+    result = np.full((n, m), np.inf)
+    for p in range(n):
+        reach = jump[p] * jump[p]
+        for k in range(m):
+            q = neighbours[p, k]
+            if q < 0 or not squared(points, p, q) <= reach:
+                continue
+            back = m - 1 - k  # of p among the neighbours of q, if they are the pixels around them
+            if q < p and neighbours[q, back] == p and result[q, back] < np.inf:
+                result[p, k] = result[q, back]
+                continue
+            turned, tint, step, way = 0.0, 0.0, 0.0, 0.0
+            for axis in range(3):
+                turned += (normals[p, axis] - normals[q, axis]) ** 2
+                tint += (colours[p, axis] - colours[q, axis]) ** 2
+                ahead = smooth[q, axis] - smooth[p, axis]
+                way += ahead * ahead
+                step += ahead * (normals[p, axis] + normals[q, axis]) / 2
+            colour = colour_cost * max(0.0, tint**0.5 - colour_noise)
+            result[p, k] = way**0.5 / spacing + turn_cost * turned**0.5 + step_cost * abs(step) + colour
+    return result

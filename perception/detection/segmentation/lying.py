@@ -45,15 +45,16 @@ def with_lying_things(surface: Surface, of: NDArray[np.int32], settings: Detecti
         level = surface.normals[members, 2] > settings.lying.min_level_normal
         if len(members) < 2 * settings.least_points or level.mean() < settings.lying.min_level_share:
             continue
-        ground = np.median(tints[members], axis=0)
-        unlike = np.linalg.norm(tints[members] - ground, axis=1)
+        shades = tints[members]
+        shades -= np.median(shades, axis=0)
+        unlike = np.sqrt(np.einsum("ij,ij->i", shades, shades))
         if (unlike > settings.joining.min_other_colour).sum() < settings.lying.min_core_points:
             continue
         number[members] = np.arange(len(members))
         near = renumbered(surface.neighbours, members, number)
         number[members] = -1
         bare = unlike < settings.joining.min_other_colour / 2
-        for piece in _pieces(tints[members], ground, near, settings):
+        for piece in _pieces(shades, unlike, near, settings):
             bare[piece] = False
             if _is_raised(surface, members[piece], members[bare], settings):
                 result[members[piece]] = count
@@ -62,27 +63,32 @@ def with_lying_things(surface: Surface, of: NDArray[np.int32], settings: Detecti
 
 
 def _pieces(
-    tints: NDArray[np.float64], ground: NDArray[np.float64], neighbours: NDArray[np.int32], settings: DetectionSettings
+    shades: NDArray[np.float64],
+    unlike: NDArray[np.float64],
+    neighbours: NDArray[np.int32],
+    settings: DetectionSettings,
 ) -> Iterator[NDArray[np.intp]]:
     """Yield the points of each connected plain piece of an object that has another colour than its ground.
 
-    The core of a piece has clearly another colour; its edge is nearer in colour to the core than to the ground.
+    ``shades`` (m, 3) are the colours of the points relative to the ground, and ``unlike`` (m,) their lengths. The core
+    of a piece has clearly another colour; its edge is nearer in colour to the core than to the ground.
     """
     from deixis.perception.detection.kernels import grown
 
-    core = np.linalg.norm(tints - ground, axis=1) > settings.joining.min_other_colour
-    taken = np.zeros(len(tints), np.bool_)
-    for middle in _connected(core, neighbours, settings.lying):
+    taken = np.zeros(len(shades), np.bool_)
+    for middle in _connected(unlike > settings.joining.min_other_colour, neighbours, settings.lying):
         if taken[middle].any():
             continue
-        seeds, away = np.zeros(len(tints), np.bool_), tints[middle].mean(axis=0) - ground
+        seeds, away = np.zeros(len(shades), np.bool_), shades[middle].mean(axis=0)
         seeds[middle] = True
-        nearer = (tints - ground) @ away > away @ away / 2
-        piece = np.flatnonzero(grown(seeds, nearer, neighbours))
+        piece = np.flatnonzero(grown(seeds, shades @ away > away @ away / 2, neighbours))
         taken[piece] = True
-        is_plain = np.linalg.norm(tints[piece].std(axis=0)) < settings.joining.max_plain_variation
-        if settings.least_points <= len(piece) < len(tints) / 2 and is_plain:
+        if settings.least_points <= len(piece) < len(shades) / 2 and _is_plain(shades[piece], settings):
             yield piece
+
+
+def _is_plain(shades: NDArray[np.float64], settings: DetectionSettings) -> bool:
+    return bool(np.linalg.norm(shades.std(axis=0)) < settings.joining.max_plain_variation)
 
 
 def _connected(

@@ -40,6 +40,7 @@ def surface_of(
     sigma: NDArray[np.float64],
     eye: NDArray[np.float64],
     settings: SurfaceSettings,
+    pixels: tuple[NDArray[np.intp], NDArray[np.intp]] | None = None,
 ) -> Surface:
     """Return the surface through points, with its normals, noise and depth jumps.
 
@@ -57,13 +58,15 @@ def surface_of(
         Viewpoint, shape (3,).
     settings
         Radii of neighbourhoods, and the distances that are depth jumps.
+    pixels
+        Row and column of each point in an image, shape (n,) each, in the order of the rows; None without an image.
 
     Returns
     -------
     Surface
         Smoothed points with their normals, spacing and areas, in metres and square metres.
     """
-    from deixis.perception.detection.kernels import gaps, mixed, planes
+    from deixis.perception.detection.kernels import gaps, mixed, planes, planes_in_image
 
     distance = np.linalg.norm(points - eye, axis=1)
     apart = gaps(points, neighbours)
@@ -75,8 +78,19 @@ def surface_of(
     )
     noisy = np.clip(settings.radius_noise_ratio * sigma, settings.min_radius, settings.max_radius)
     radius = np.maximum(noisy, settings.radius_spacing_ratio * spacing)
-    normals, smooth = planes(points, neighbours, radius, jump, eye, settings.max_plane_points)
+    if pixels is None or not len(points):
+        normals, smooth = planes(points, neighbours, radius, jump, eye, settings.max_plane_points)
+    else:
+        reach = settings.max_pixels_per_spacing * radius / np.maximum(spacing, 1e-9)
+        normals, smooth = planes_in_image(points, *pixels, radius, reach, eye, _nearest(settings.max_plane_points))
     lab = np.zeros((len(points), 3))
     if colours is not None:
         lab = mixed(lab_of_srgb(colours), neighbours)
     return Surface(points, smooth, normals, lab, neighbours, sigma, jump, spacing)
+
+
+def _nearest(count: int) -> NDArray[np.int64]:
+    """Return the steps from a pixel to the nearest ``count`` pixels, rows and columns, shape (count, 2)."""
+    side = np.arange(-int(count**0.5), int(count**0.5) + 1)
+    steps = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+    return steps[np.argsort((steps**2).sum(axis=1), kind="stable")[:count]]
