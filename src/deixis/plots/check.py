@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def plot_check(checked: Check, path: str | Path) -> None:
-    """Draw the table from above, and the verdict: misplaced, turned and extra things in orange, undetermined ones dotted.
+    """Draw the table and the verdict: misplaced, turned and extra things in orange, undetermined ones dotted.
 
     Things of a wrong colour are hatched.
 

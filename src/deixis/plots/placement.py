@@ -75,8 +75,8 @@ ARROW_MARGIN = 3.0
 LEADER = 10.0
 """Minimum number of pixels between a name and its thing at which a line joins them."""
 
-WITHIN = 0.98
-"""Share of a thing that lies on another one if that carries it."""
+WITHIN = 0.85
+"""Minimum share of a thing that lies on another one if that carries it; in the view of a camera, a cup sticks out."""
 
 LARGER = 1.2
 """Minimum area of what carries a thing, relative to the thing; things of one size only lie in one place."""

@@ -41,7 +41,7 @@ def test_names_are_written_where_there_is_room_among_many_things() -> None:
     assert f"{MANY + 1 - len(texts)} names left out" in axes.get_xlabel()
 
 
-def test_nothing_is_said_of_names_where_all_are_written() -> None:
+def test_the_axis_counts_no_names_where_all_are_written() -> None:
     (axes,) = written(grid(20, 2.0)).axes
     assert len(axes.texts) == 20 and "left out" not in axes.get_xlabel()
 
@@ -51,7 +51,7 @@ def test_a_name_as_long_as_the_picture_is_shortened() -> None:
     assert [text.get_text() for text in axes.texts] == ["x" * 47 + "…"]
 
 
-def test_what_has_no_name_of_its_own_is_written_in_another_hand() -> None:
+def test_names_of_unnamed_things_are_grey_and_slanted() -> None:
     (axes,) = written(grid(2, 2.0), quiet=("thing_1",)).axes
     assert [text.get_fontstyle() for text in axes.texts] == ["normal", "italic"]
 

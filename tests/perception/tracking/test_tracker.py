@@ -126,7 +126,7 @@ def test_cloud_without_a_table_is_reported_until_one_comes() -> None:
         assert [thing.id for thing in now.things] == ["t1", "t2"] and not now.notes
 
 
-def test_table_laid_anew_between_two_frames_is_looked_at_again() -> None:
+def test_table_laid_again_between_two_frames_is_detected_again() -> None:
     actions = (TakeAway("plate"), TakeAway("mug"), Bring(replace(PLATE, name="other", x=0.1)), Bring(BOWL))
     story = film([PLATE, MUG], [Rest(0.2), *actions, Rest(0.2)])
     first, second = story.frames(1 / story.seconds, scale=0.4)

@@ -35,7 +35,7 @@ def test_thing_whose_place_shows_the_table_moves() -> None:
 
 
 @pytest.mark.parametrize(("count", "is_anew"), [(1, False), (2, True)])
-def test_table_is_laid_anew_if_most_things_left_at_once(count: int, is_anew: bool) -> None:
+def test_table_is_laid_again_if_most_things_left_at_once(count: int, is_anew: bool) -> None:
     look = first_look([PLATE, MUG])
     changes = seen_without(look, *range(1, count + 1)).changes
     assert is_laid_anew(look.things.resting, changes, HALF.moved) == is_anew
