@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import unicodedata
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 from deixis.errors import DeixisError
 from deixis.ontology.graph.facts import Source
-
-if TYPE_CHECKING:
-    from deixis.grammar.script import Script
 
 MAX_PROBLEMS_SHOWN = 50  # problems that are shown in full
 LINE_WINDOW = 100  # characters of a long line that are shown
@@ -79,9 +76,9 @@ class ScriptError(DeixisError, ValueError):
 
 
 class ScriptTimeError(DeixisError, TimeoutError):
-    """The time limit was reached before a script was read; ``read`` is the script of the sentences before, or None."""
+    """The time limit was reached before a script was read; ``read`` is the ``Script`` of what was read, or None."""
 
-    def __init__(self, message: str, read: Script | None = None) -> None:
+    def __init__(self, message: str, read: Any = None) -> None:
         super().__init__(message)
         self.read = read
 

@@ -193,9 +193,9 @@ def _sentence(
 ) -> Sentence:
     """Parse a sentence in several ways: by the second best classes of its words, then each joint read otherwise."""
     if not any(any(c.isalpha() for c in word.norm) for word in words):
-        note = Misunderstood((raw.start, raw.end), "numbers alone say nothing about where a thing is")
+        unplaced = Misunderstood((raw.start, raw.end), "numbers alone say nothing about where a thing is")
         numbers = sum(word.is_word for word in words)
-        return Sentence(text[raw.start : raw.end], note.span, (), None, numbers, 0, (note,), raw.heading)
+        return Sentence(text[raw.start : raw.end], unplaced.span, (), None, numbers, 0, (unplaced,), raw.heading)
     asks = text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?")
     asks = not without_request(words) and asks
     tagger = Tagger(words, nouns)
@@ -345,7 +345,7 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
 
 
-_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ"}
+_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ", "LJ"}
 _ORDERS = frozenset({"command", "search", "other"})
 """Shapes of commands, which show by their verb where they begin."""
 

@@ -134,6 +134,8 @@ _CLITICS = ("'s", "'re", "'m", "'ll", "'d", "'ve")
 _ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z])|\n[ \t]*\n|\n")
 _ALONE = re.compile(r"\([a-z][^().!?\n]{20,}\)(?=\s+[A-Z])")
 """Sentence in parentheses without a full stop of its own."""
+_INCHES = re.compile(r"\d\s*in\.\Z")
+"""Abbreviation of inches after a number at the end of what was read so far."""
 _STEP = re.compile(
     r"[ \t]*(?:[\u2022\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714][ \t]*|"
     r"(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2013]"
@@ -252,6 +254,12 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
             if "\n" not in line and following[:1].isupper() and len(line) < 60 and not line.rstrip().endswith(","):
                 return match.end(), False
             continue
+        if (
+            mark == "."
+            and _INCHES.search(text, start, match.end())
+            and text[match.end() + 1 : match.end() + 2].islower()
+        ):
+            continue  # '2 in. from the edge'
         if mark == "." or mark.startswith("."):
             before = text[max(start, match.start() - 8) : match.start()].rsplit(None, 1)
             last = before[-1].casefold().lstrip("(") if before else ""
@@ -399,6 +407,21 @@ def _without_dimensions(words: list[Word]) -> None:
 
 _NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
 _SECOND_DIMENSION = re.compile(r"x\d+")
+
+
+def _without_entering(words: list[Word]) -> None:
+    """Read *on the left as you walk in stands a lamp* as *on the left stands a lamp*: left is as one sees it."""
+    for i in range(len(words) - 4, 0, -1):
+        if [word.norm for word in words[i : i + 2]] != ["as", "you"] or words[i + 2].norm not in _ENTERING:
+            continue
+        end = i + 3 + (words[i + 3].norm in ("in", "inside", "through"))
+        form = verb_forms().get(words[end].norm) if end < len(words) else None
+        stands = end < len(words) and (words[end].norm in IS_FORMS or (form is not None and form.kind == "posture"))
+        if stands and words[0].norm in prepositions():
+            del words[i:end]
+
+
+_ENTERING = word_set("enter walk come go step")
 
 
 def _read_halfway(words: list[Word]) -> None:
@@ -620,6 +643,14 @@ def _without_following(words: list[Word]) -> None:
                 del words[i]
             else:
                 words[i].norm = "items"
+
+
+def _without_and_such(words: list[Word]) -> None:
+    """Read *plates and cups and such* without *and such*."""
+    for i in range(len(words) - 2, 1, -1):
+        last = i + 2 == len(words) or not words[i + 2].is_word
+        if [word.norm for word in words[i : i + 2]] in (["and", "such"], ["and", "so"], ["or", "so"]) and last:
+            del words[i : i + 2]
 
 
 def _without_particles_of_filling(words: list[Word]) -> None:
@@ -915,6 +946,14 @@ def words_of(text: str, span: Span) -> list[Word]:
                 continue  # a pictograph, or a mark of one
             elif raw in _LENGTH_MARKS and found and _is_length(text, span, found[-1], start):
                 found[-1].norm, found[-1].end = f"{found[-1].norm}-{_LENGTH_MARKS[raw]}", end
+            elif (
+                raw == "."
+                and len(found) > 1
+                and found[-1].norm == "in"
+                and found[-2].norm[-1:].isdigit()
+                and end < span[1]
+            ):
+                found[-1].norm = "inches"
             elif raw == "." and found and found[-1].norm in _ABBREVIATIONS and found[-1].end == start and end < span[1]:
                 continue
             elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|[]":
@@ -936,6 +975,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_ranges(found)
     _without_dimensions(found)
     _read_halfway(found)
+    _without_entering(found)
     _without_set_aside(found)
     _read_setups(found)
     _without_asides_in_verbs(found)
@@ -947,6 +987,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _without_inserted_adverbs(found)
     _without_following(found)
     _without_particles_of_filling(found)
+    _without_and_such(found)
     _count_halves(found)
     _without_floating_each(found)
     _join_corrections(found)

@@ -82,8 +82,12 @@ class TripleIndex(TermIndex[str]):
     def __init__(self, triples: Iterable[ox.Triple | ox.Quad]) -> None:
         super().__init__()
         for triple in triples:
-            subject, value = (str(getattr(term, "value", term)) for term in (triple.subject, triple.object))
-            self.add(subject, triple.predicate.value, value)
+            subject, value = triple.subject, triple.object
+            self.add(
+                subject.value if hasattr(subject, "value") else str(subject),
+                triple.predicate.value,
+                value.value if hasattr(value, "value") else str(value),
+            )
 
     def values(self, subject: str, predicate: str) -> list[str]:
         """Return the objects of a subject under a predicate.
@@ -133,10 +137,10 @@ class TripleIndex(TermIndex[str]):
         OntologyError
             Unless there is exactly one.
         """
-        found = self.values(subject, predicate)
+        found = self.objects(subject, predicate)
         if len(found) != 1:
             raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, got {len(found)}")
-        return found[0]
+        return next(iter(found))
 
     def subjects(self, predicate: str, object: str) -> list[str]:
         """Return the subjects that have an object under a predicate.

@@ -429,7 +429,7 @@ def _pieces(
 
     ``least`` (n,) are the least heights of objects, and ``colours`` those of the whole cloud.
     """
-    from deixis.perception.detection.kernels import renumbered
+    from deixis.perception.detection.kernels import corners_of_box, renumbered
 
     of = np.full(len(view.points), BACKGROUND, np.int32)
     chosen = np.flatnonzero(rising.above)
@@ -452,7 +452,7 @@ def _pieces(
     for piece in np.flatnonzero((counts >= settings.least_points) & (fates == Fate.DISCARDED)).tolist():
         points = surface.points[members[piece]]
         rise = np.quantile(points[:, 2] / least[chosen[members[piece]]], settings.heights.object_quantile)
-        if rise > 1.0 and np.ptp(points, axis=0).max() >= settings.least_length:
+        if rise > 1.0 and np.ptp(corners_of_box(points), axis=0).max() >= settings.least_length:
             fates[piece] = Fate.REPORTED
     of[chosen] = found
     return Pieces(of, fates)

@@ -12,8 +12,15 @@ from numba import njit
 _BLOCK = 1024
 """Number of points in a block of a loop over planes, so that they stay in the fastest cache."""
 
+_BUCKETS = 1024
+"""Number of buckets for paths of similar cost, a power of two."""
+
+_BUCKET_COST = 1 / 16
+"""Range of the costs in a bucket, below that of most steps."""
+
 _STRIP = 32
 """Number of pixels of a row whose neighbourhoods are summed at once."""
+
 
 @njit(cache=True, nogil=True, fastmath=True)
 def support(x, y, z, tolerance, planes):  # type: ignore[no-untyped-def]
@@ -595,67 +602,70 @@ def grow(seeds, spacing, costs, points, smooth, normals, colours, neighbours, ju
 
     Notes
     -----
-    The method is that of E. W. Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1,
-    1959. A node of the heap has four children. The heap holds a point at most once, with its cost. The costs of all
-    steps are computed first, in the order of the points, because the paths visit the points in no order: reading the
-    properties of neighbours there takes most of the time.
+    The method is that of U. Meyer and P. Sanders, "Delta-stepping: a parallelizable shortest path algorithm", Journal
+    of Algorithms 49, 2003, on one processor. Points wait in buckets of similar cost. A bucket keeps the points in the
+    order in which paths reach them, near each other in space, so that the processor finds them in its cache; a heap
+    mixes them. For the same reason, the costs of all steps are computed before, in the order of the points. A point
+    whose cost falls after it left its bucket waits again.
     """
     n, m = neighbours.shape
     step_costs = _step_costs(spacing, costs, points, smooth, normals, colours, neighbours, jump)
     of, cost = np.full(n, -1, np.int32), np.full(n, np.inf)
-    heap, keys, place, size = np.empty(n, np.int32), np.empty(n), np.full(n, -1, np.int32), len(seeds)
+    first = np.full(_BUCKETS, -1, np.int32)  # of the doubly linked list of each bucket
+    bucket, before, after = np.full(n, -1, np.int32), np.empty(n, np.int32), np.empty(n, np.int32)
     for number in range(len(seeds)):
         p = seeds[number]
-        of[p], cost[p], heap[number], keys[number], place[p] = number, 0.0, p, 0.0, number
-    following, start = len(seeds), 0
+        of[p], cost[p] = number, 0.0
+        _put(p, 0, first, bucket, before, after)
+    following, start, waiting, now = len(seeds), 0, len(seeds), 0
     while True:
-        while size:
-            p, so_far, size = heap[0], keys[0], size - 1
-            if size:
-                _sink(heap[size], keys[size], heap, keys, place, size)
+        while waiting:
+            p = first[now % _BUCKETS]
+            if p < 0:
+                now += 1
+                continue
+            _take(p, first, bucket, before, after)
+            waiting -= 1
             for k in range(m):
-                total = so_far + step_costs[p, k]
+                total = cost[p] + step_costs[p, k]
                 if total < np.inf and total < cost[neighbours[p, k]]:
                     q = neighbours[p, k]
-                    if cost[q] == np.inf:
-                        place[q], size = size, size + 1
                     of[q], cost[q] = of[p], total
-                    _rise(q, total, heap, keys, place)
+                    place = min(max(int(total / _BUCKET_COST), now), now + _BUCKETS - 1) % _BUCKETS
+                    if place != bucket[q]:
+                        if bucket[q] >= 0:
+                            _take(q, first, bucket, before, after)
+                            waiting -= 1
+                        _put(q, place, first, bucket, before, after)
+                        waiting += 1
         while start < n and of[start] >= 0:
             start += 1
         if start == n:
             return of
-        of[start], cost[start], heap[0], keys[0], place[start], size = following, 0.0, start, 0.0, 0, 1
+        of[start], cost[start], waiting, now = following, 0.0, 1, 0
+        _put(start, 0, first, bucket, before, after)
         following += 1
 
 
 @njit(cache=True, nogil=True)
-def _rise(p, key, heap, keys, place):  # type: ignore[no-untyped-def]
-    """Move a point with a smaller key up in the heap."""
-    i = place[p]
-    while i and keys[(i - 1) // 4] > key:
-        above = (i - 1) // 4
-        heap[i], keys[i] = heap[above], keys[above]
-        place[heap[i]] = i
-        i = above
-    heap[i], keys[i], place[p] = p, key, i
+def _put(p, place, first, bucket, before, after):  # type: ignore[no-untyped-def]
+    """Insert a point at the head of the list of a bucket."""
+    bucket[p], before[p], after[p] = place, -1, first[place]
+    if first[place] >= 0:
+        before[first[place]] = p
+    first[place] = p
 
 
 @njit(cache=True, nogil=True)
-def _sink(p, key, heap, keys, place, size):  # type: ignore[no-untyped-def]
-    """Insert a point at the top of the heap, and move it down."""
-    i = 0
-    while 4 * i + 1 < size:
-        child = 4 * i + 1
-        for other in range(child + 1, min(child + 4, size)):
-            if keys[other] < keys[child]:
-                child = other
-        if keys[child] >= key:
-            break
-        heap[i], keys[i] = heap[child], keys[child]
-        place[heap[i]] = i
-        i = child
-    heap[i], keys[i], place[p] = p, key, i
+def _take(p, first, bucket, before, after):  # type: ignore[no-untyped-def]
+    """Remove a point from the list of its bucket."""
+    if before[p] >= 0:
+        after[before[p]] = after[p]
+    else:
+        first[bucket[p]] = after[p]
+    if after[p] >= 0:
+        before[after[p]] = before[p]
+    bucket[p] = -1
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -28,7 +28,7 @@ from deixis.reasoning.description_logic.terms import (
     read_ntriples,
     write_ntriples,
 )
-from deixis.reasoning.errors import InconsistencyError, LimitError, SettingError
+from deixis.reasoning.errors import InconsistencyError, LimitError, ReasonerError, SettingError
 
 MAX_EXPLAINED = 5
 """Maximum number of unsatisfiable classes that are explained; later ones usually have the same reasons."""
@@ -127,7 +127,8 @@ def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_lim
 def explained(ntriples: str, found: Entailment, deadline: Deadline, every: bool = False) -> Entailment:
     """Return a result with a justification of each impossibility, or with all of them.
 
-    The verdict does not change; at the deadline, the result has the justifications found so far.
+    The verdict does not change; at the deadline, or if HermiT refuses the ontology, the result has the justifications
+    found so far.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ def explained(ntriples: str, found: Entailment, deadline: Deadline, every: bool 
                 why.extend(justify_all(ntriples, statement, deadline))
             else:
                 why.append(justify(ntriples, statement, deadline))
-    except LimitError as error:
+    except (LimitError, ReasonerError) as error:
         unexplained = str(error)
     if found.consistent:
         return replace(found, impossible=tuple(why), unexplained=unexplained)

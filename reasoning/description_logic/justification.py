@@ -49,7 +49,7 @@ from deixis.reasoning.description_logic.terms import (
     read_ntriples,
     write_ntriples,
 )
-from deixis.reasoning.errors import LimitError, NotEntailedError, SettingError
+from deixis.reasoning.errors import LimitError, NotEntailedError, ReasonerError, SettingError
 
 _SOMEONE, _OTHER, _NODE = "<urn:deixis:someone>", "<urn:deixis:other>", "_:denial"
 _OURS = tuple(f"<{PREFIXES[name]}" for name in ("rdf", "rdfs", "owl"))
@@ -261,7 +261,15 @@ def _oracle(parts: Axioms, denied: Sequence[Triple], deadline: Deadline) -> Orac
     def first(candidates: Sequence[Sequence[Axiom]]) -> int | None:
         if deadline.passed:
             raise LimitError("undecided: time limit reached before a justification was found; raise it")
-        return first_inconsistent([[*background, *_triples(axioms)] for axioms in candidates], deadline.left)
+        ontologies = [[*background, *_triples(axioms)] for axioms in candidates]
+        try:
+            return first_inconsistent(ontologies, deadline.left)
+        except ReasonerError:  # HermiT refuses a literal outside its datatype, which contradicts itself by the rules
+            contradictory = (k for k, one in enumerate(ontologies) if Materialisation(one, deadline).contradictions)
+            place = next(contradictory, None)
+            if place is None:
+                raise
+            return place
 
     return first
 

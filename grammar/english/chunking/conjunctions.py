@@ -38,7 +38,7 @@ class JointChunker(VerbChunker):
             return Chunk("REL", at, at + 1)
         follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
         if norm in ("which", "who", "whom", "where") and follows_noun and at > 0:
-            return Chunk("REL", at, at + 1)
+            return Chunk("REL", at, at + 1, norm)
         if (norm == "unlike" and not previous) or (
             not previous and (norm, after) in (("instead", "of"), ("rather", "than"))
         ):

@@ -309,17 +309,23 @@ def end_of_list(chunks: list[Chunk], at: int) -> int:
         Index after the last thing; ``at`` where there is no such list, or where each thing has its own place.
     """
     types = [chunk.type for chunk in chunks]
-    i, bare, placed, commas, conjoined = at, 0, 0, 0, False
+    i, bare, placed, holding, commas, conjoined = at, 0, 0, 0, 0, False
+    if at and types[at - 1] in ("PREP", "OF", "WITH"):
+        return at  # 'between the box and the jug with a coat on it'
     while types[i : i + 1] == ["NP"] and not (chunks[i].value.pronoun or is_place(chunks[i].value)):
         i = _after_of(types, i + 1)
         is_placed = types[i : i + 2] == ["PREP", "NP"] and chunks[i].value.preposition.relation not in _WITH_LISTS
-        if is_placed and not is_place(chunks[i + 1].value):
+        if types[i : i + 2] == ["WITH", "NP"]:
+            i, holding = i + 2, holding + 1
+            if types[i : i + 2] == ["PREP", "NP"] and chunks[i + 1].value.pronoun == "it":
+                i += 2  # 'a plate with a napkin on it'
+        elif is_placed and not is_place(chunks[i + 1].value):
             i, placed = _after_of(types, i + 2), placed + 1
         else:
             bare += 1
         if conjoined:
-            several = bare > 1 or commas > 1  # not 'a cup on the tray and a jug'
-            return i if placed and bare and several and types[i : i + 1] in ([], ["CUT"]) else at
+            several = bare > 1 or commas > 1 or holding > 0  # not 'a cup on the tray and a jug'
+            return i if placed + holding and bare and several and types[i : i + 1] in ([], ["CUT"]) else at
         joints = types[i : i + 2]
         if joints[:1] not in (["COMMA"], ["AND"]):
             return at
@@ -664,7 +670,7 @@ def classify(segment: Segment) -> list[Chunk]:
                 kind = "OJ"
             in_list = any(types[k] == "NP" and end_of_list(source, k) > i for k in range(i))
             if kind == "NJ" and in_list and found[0].type != "PUT":
-                kind = "OJ"
+                kind = "LJ"
             if (
                 kind == "NJ"
                 and segment.link == ":"

@@ -48,13 +48,13 @@ def other_joints(chunks: list[Chunk]) -> Iterator[tuple[list[Chunk], bool]]:
 def _in_list(chunks: list[Chunk], at: int) -> bool:
     """Return True for a comma between bare noun phrases of a list: *a drum, a doll and a kite*, *cup, jug, tin*."""
     types = [chunk.type for chunk in chunks]
+    if any(end_of_list(chunks, i) > at for i in range(at) if types[i] == "NP"):
+        return True  # also 'a mug, a bar on a dish and a comb'
     if types[at : at + 2] != ["COMMA", "NP"] or at == 0 or types[at - 1] != "NP":
         return False
     first = last = at
     while types[max(0, first - 2) : first] == ["COMMA", "NP"]:
         first -= 2
-    if any(end_of_list(chunks, i) > at for i in range(at) if types[i] == "NP"):
-        return True
     while types[last + 2 : last + 4] == ["COMMA", "NP"]:
         last += 2
     last += types[last + 2 : last + 4] == ["COMMA", "AND"]

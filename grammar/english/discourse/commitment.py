@@ -126,6 +126,7 @@ UNREAL = re.compile(
     r"|,\s*an?\s+(?:error|mistake|slip|misprint)\b"
     r"|\bwhich\s+(?:i|we)\s+(?:doubt|deny|(?:do\s+not|don['\u2019]t)\s+(?:believe|think))\b"
     r"|\b(?:sign|label|note|card|notice|poster|plaque|caption|sticker)\s+(?:reads?|says?)\s*:"
+    r"|\b(?:wrongly|mistakenly|incorrectly|erroneously)\b|\b(?:urge|temptation|impulse)\s+to\b"
     r"|\bnothing\s+like\s+(?:as|so)\b|\ball\s+that(?:['\u2019]s|\s+is)\s+(?:missing|lacking|needed)\b"
     r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
     r"|\b(?:theory|theories|story|map|guidebook|article|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"

@@ -437,7 +437,13 @@ class References:
             if alone and phrase.plural and phrase.count is None and not named:
                 continue  # 'the drums' after 'the bass drum'
             every = phrase.determiner in ("each", "every") or any(a.rank is not None for a in phrase.adjectives)
-            if every and alone and entity.born < self.sentence and not _agreement(entity, phrase) and any(dimension in _LASTING for dimension, _ in entity.adjectives):
+            if (
+                every
+                and alone
+                and entity.born < self.sentence
+                and not _agreement(entity, phrase)
+                and any(dimension in _LASTING for dimension, _ in entity.adjectives)
+            ):
                 continue  # 'one on each square' after 'the white square'
             sized = any(a.dimension == "size" and a.degree is Degree.PLAIN for a in phrase.adjectives)
             other = phrase.head in GENERAL and entity.noun != phrase.head and sized

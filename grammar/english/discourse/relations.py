@@ -98,6 +98,9 @@ def _are_contents(held: Entity, vessel: Entity) -> bool:
 _TOLD_APART = word_set("box case")
 """Vessels that *with* often tells apart by a part: *the one with the antennas*."""
 
+_CLOSED = word_set("cabinet dresser sideboard")
+"""Surfaces with doors or drawers, which hold things inside them."""
+
 _RACKS = word_set("rack holder basket crate caddy quiver")
 """Holders without doors and drawers, so that *with* says what is in them: *a rack with four test tubes*."""
 
@@ -629,7 +632,9 @@ class Relations(Mentions):
     def _hold(self, subject: Entity, held: Entity, words: list[str]) -> None:
         """State what a support or a vessel holds as on or inside it; what another thing is with is near it."""
         noun = last_word(subject.noun)
-        if subject.role is Role.SURFACE or (noun in SUPPORTS | SURFACES and CONTAINING.isdisjoint(words)):
+        if noun in _CLOSED and not HOLDING.isdisjoint(words) and subject.role is not Role.SURFACE:
+            self._pair(held, "inside", subject, False)  # 'the cabinet holds cups'
+        elif subject.role is Role.SURFACE or (noun in SUPPORTS | SURFACES and CONTAINING.isdisjoint(words)):
             self._pair(held, "on", subject, False)
         elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
             self._pair(held, "inside", subject, False)

@@ -189,6 +189,8 @@ class Statements(Relations):
                 leaf.adjectives.add((relation, value))
         if value in ("nested", "nest", "stacked", "stack") and (subject.itself.members or subject.plural):
             relation, value = ("nested" if value.startswith("nest") else "stacked"), None
+        elif relation == "open" and self.text[predicate.span[1] : self.end].lstrip().casefold().startswith("to "):
+            return  # 'the hall is open to the kitchen'
         elif relation in ("upside_down", "empty", "open", "closed"):
             value = None
         elif (

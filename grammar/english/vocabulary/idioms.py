@@ -294,6 +294,7 @@ IDIOMS = tuple(
         "seen from above",
         "face up",
         "part way up",
+        "straight ahead",
         "right side up",
         "right way up",
         "the right way up",

@@ -122,11 +122,11 @@ def sums(of: NDArray[np.integer], values: NDArray[np.float64] | None = None, cou
 
 def _seeds(points: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
     """Return the point nearest to the mean of each occupied grid cell."""
-    from deixis.perception.detection.kernels import nearest_to_means
+    from deixis.perception.detection.kernels import corners_of_box, nearest_to_means
 
-    cells = np.floor(points / spacing).astype(np.int64)
-    cells -= cells.min(axis=0)
-    across, deep, high = (cells.max(axis=0) + 1).tolist()
+    low, most = np.floor(corners_of_box(points) / spacing).astype(np.int64)
+    cells = np.floor(points / spacing).astype(np.int64) - low
+    across, deep, high = (most - low + 1).tolist()
     codes = (cells[:, 0] * deep + cells[:, 1]) * high + cells[:, 2]
     if across * deep * high < 50 * len(points) + 1_000_000:
         there = np.zeros(across * deep * high, dtype=np.bool_)

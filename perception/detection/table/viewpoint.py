@@ -156,7 +156,8 @@ def camera_pose_of(cloud: PointCloud, settings: DetectionSettings) -> CameraPose
 def _without_empty_lines(image: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return an image (r, c, 3) without rows and columns that have no depth; some cameras leave lines out."""
     there = np.isfinite(image[..., 2])
-    return image[there.any(axis=1)][:, there.any(axis=0)]
+    rows, columns = there.any(axis=1), there.any(axis=0)
+    return image if rows.all() and columns.all() else image[rows][:, columns]
 
 
 def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], settings: ViewpointSettings) -> NDArray[np.float64]:

@@ -88,8 +88,8 @@ def complete(things: Things, table: Table, seen: Observation, settings: Tracking
         colours = reference.colour.reshape(-1, 3)[each]
         thing.extend(reference.points(each, view), colours, settings.detection.outlines)
     ends = thing.unseen_ends(hidden_lengths(thing, resting, reference, view))
-    length, width, _ = thing.oriented.extents
-    thing.suppose(ends, *(likely_length(length, width, length + sum(ends)) if any(ends) else (length, 0.0)))
+    length, width, height = thing.oriented.extents
+    thing.suppose(ends, *(likely_length(length, width, height, length + sum(ends)) if any(ends) else (length, 0.0)))
     if merged:
         thing.take_name(merged, seen.at)
     things.leave(merged)

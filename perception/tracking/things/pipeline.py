@@ -161,8 +161,8 @@ class Pipeline:
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
         self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
         self._carrier: tuple[Pipeline, NDArray[np.float64]] | None = None  # what it lay on, and its pose on it
-        # against and along the long axis of the box: ends that were seen, the lengths that were hidden beyond them last,
-        # and the numbers of the last views in a row that showed them
+        # against and along the long axis of the box: True for ends that were seen, the lengths that were hidden beyond
+        # them last, and the numbers of the last views in a row that showed them
         self._ends_seen, self._hidden, self._views_of_end = [False, False], [0.0, 0.0], [0, 0]
         self._unseen, self._spread = (
             (0.0, 0.0),

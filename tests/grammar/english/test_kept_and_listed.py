@@ -46,6 +46,8 @@ def test_two_sides_share_the_noun_after_or(text: str) -> None:
          {"on(bar, dish)", "row(mug, bar, comb, jug, 'left to right')"}),
         ("There is a cup on the tray, a jug on the mat, and a spoon on the box.",
          {"on(cup)", "on(jug, mat)", "on(spoon, box)"}),
+        ("The tray holds a mug, a plate with a napkin on it, a comb and a jug.",
+         {"on(mug, tray)", "on(napkin, plate)", "on(comb, tray)", "on(jug, tray)"}),
         ("The tray holds a mug, a candle between a cup, a jug and a plate.",
          {"on(mug, tray)", "between(candle, cup, jug, plate)"}),
     ],
@@ -101,3 +103,41 @@ def test_its_after_with_is_of_the_subject(text: str, expected: list[str]) -> Non
 )
 def test_turned_clauses_give_their_facts(text: str, expected: str) -> None:
     assert expected in asserted(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Resist the urge to put the fork on the mat.", "The fork is often wrongly placed on the mat."],
+)
+def test_what_is_done_wrongly_is_not_asserted(text: str) -> None:
+    assert asserted(f"{text} The cup is on the saucer.") == ["on(cup, saucer)"]
+
+
+def test_a_move_ends_where_it_goes_to() -> None:
+    assert asserted("Move the fork from the mat to the plate.") == ["on(fork, plate)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("There is a box containing pens on the shelf.", ["inside(pens, box)", "on(box)"]),
+        ("Lean the picture in its frame against the jug.", ["inside(picture, frame)", "against(picture, jug)"]),
+    ],
+)
+def test_participles_and_supports_stand_apart(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (
+            "With the plate in front of you, lay the fork on its left.",
+            ["in_front(plate, 'viewer')", "left(fork, plate)"],
+        ),
+        ("The order from left to right is fork, plate and knife.", ["row(fork, plate, knife, 'left to right')"]),
+        ("From left to right, the order is fork, plate, and knife.", ["row(fork, plate, knife, 'left to right')"]),
+    ],
+)
+def test_what_is_said_first_is_read_first(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected

@@ -6,7 +6,7 @@ import pytest
 from ontologies import CUTLERY, ntriples, triple, triples
 
 from deixis.deadline import Deadline
-from deixis.reasoning.description_logic.entailment import LogicEngine, entail, explained, unsatisfiable_by_rules
+from deixis.reasoning.description_logic.entailment import Entailment, LogicEngine, entail, explained, unsatisfiable_by_rules
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
 from deixis.reasoning.errors import LimitError, SettingError
 
@@ -59,6 +59,23 @@ def test_the_verdict_stays_if_the_explanation_runs_out_of_time() -> None:
     found = explained(text, entail(text, "hermit"), Deadline.after(0))
     assert not found.consistent and found.inconsistency == ()
     assert found.unexplained is not None and "time limit reached" in found.unexplained
+
+
+@pytest.mark.parametrize("more", ["", ":x a :Fork, :Spoon ."])
+def test_a_malformed_literal_that_hermit_refuses_is_justified(more: str) -> None:
+    text = ntriples(CUTLERY + ':weight a owl:DatatypeProperty . :y :weight "heavy"^^xsd:decimal . ' + more)
+    found = explained(text, entail(text), Deadline.never(), every=True)
+    assert not found.consistent and found.unexplained is None
+    assert sorted(len(why.axioms) for why in found.inconsistency) == ([1, 3] if more else [1])
+
+
+def test_the_verdict_stays_if_hermit_refuses_the_ontology() -> None:
+    date = ':made a owl:DatatypeProperty . :z :made "2026-01-01"^^xsd:date . '
+    text = ntriples(CUTLERY + date + TRAY + SPORK + ":t a :Tray .")
+    inconsistent = Entailment(LogicEngine.AUTO, complete=False, consistent=False)
+    found = explained(text, inconsistent, Deadline.never())
+    assert not found.consistent and found.inconsistency == ()
+    assert found.unexplained is not None and "hermit refused the ontology" in found.unexplained
 
 
 def test_the_rules_name_every_unsatisfiable_class() -> None:

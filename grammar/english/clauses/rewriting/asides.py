@@ -533,8 +533,8 @@ def _naming(chunks: list[Chunk], at: int) -> Run | None:
     apart = type_at(chunks, at) == "COMMA"
     said = type_at(chunks, at) == "BE"
     first = at + (apart or said)
-    named = type_at(chunks, at - 1) == "NP" or (said and type_at(chunks, at - 1) == "COMMA")
-    if not named or type_at(chunks, first) not in ("PART", "TPART"):
+    follows = type_at(chunks, at - 1) == "NP" or (said and type_at(chunks, at - 1) == "COMMA")
+    if not follows or type_at(chunks, first) not in ("PART", "TPART"):
         return None
     group = chunks[first].value
     if not isinstance(group, VerbGroup) or _base(group) not in _NAMING or group.form == "ing":

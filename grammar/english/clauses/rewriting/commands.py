@@ -282,6 +282,17 @@ def _particle(chunks: list[Chunk], at: int) -> Run | None:
     return (at + 1, None) if (chunks[at + 1].value.count or 1) > 1 else None
 
 
+def _origin(chunks: list[Chunk], at: int) -> Run | None:
+    """Find where a thing was before it is moved: *move the cup from the mat to the tray*."""
+    types = [type_at(chunks, at + k) for k in range(-2, 3)]
+    if types != ["PUT", "NP", "PREP", "NP", "PREP"] or word_of(chunks[at]) != "from":
+        return None
+    if word_of(chunks[at + 2]) not in ("to", "into", "onto"):
+        return None
+    leave_out(chunks[at : at + 2], "where a thing was before does not say where it is")
+    return at + 2, None
+
+
 def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
     """Return *you want the lamp to be on the left* as *the lamp is on the left*: what the reader wants is advice."""
     if any(chunk.type == "SUB" for chunk in chunks):
@@ -296,7 +307,7 @@ def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    without(_particle), _with_wishes_as_statements, _with_companions_as_places, _with_aligned_parts,
+    without(_particle), without(_origin), _with_wishes_as_statements, _with_companions_as_places, _with_aligned_parts,
     _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
     _with_participles_of_times, without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands,
     _with_placements_as_commands,

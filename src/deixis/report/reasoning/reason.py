@@ -73,7 +73,7 @@ def impossibility_lines(found: Entailment) -> Iterator[str]:
     Yields
     ------
     str
-        Each reason with its axioms; then a notice if the time limit ended the search for reasons.
+        Each reason with its axioms; then why the search for reasons ended early, if it did.
     """
     words = Words(found.labels)
     for justification in found.inconsistency:
@@ -83,7 +83,7 @@ def impossibility_lines(found: Entailment) -> Iterator[str]:
         yield from justification_lines(justification, words)
     if found.unexplained is not None:
         why = "There may be more reasons" if found.inconsistency or found.impossible else "The reason was not found"
-        yield f"{why}: {found.unexplained} (--time-limit)."
+        yield f"{why}: {found.unexplained}."
 
 
 def _doubt(justification: Justification) -> str:

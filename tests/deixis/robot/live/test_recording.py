@@ -95,10 +95,11 @@ def test_hands_that_grip_do_not_point(memory: Path) -> None:
 @pytest.mark.parametrize(
     ("question", "words"),
     [
-        ("What did Ada do?", "Ada moved the t3 at"),
-        ("What did Ben take away?", "Ben took the t1 away at"),
-        ("Who moved t3 first?", "Ada moved the t3 at"),
-        ("Who moved t3 last?", "Not known: who moved the t3 at"),
+        ("What happened to t1?", "t1 was there from"),
+        ("What did Ada do?", "Ada moved t3 at"),
+        ("What did Ben take away?", "Ben took t1 away at"),
+        ("Who moved t3 first?", "Ada moved t3 at"),
+        ("Who moved t3 last?", "Not known: who moved t3 at"),
     ],
 )
 def test_persons_and_their_acts_are_recalled(memory: Path, question: str, words: str) -> None:
