@@ -132,7 +132,7 @@ _REWORDED = tuple(
         (r"^what (?:was|were) the (first|last) (?:thing|sentence|word)s? (?:that )?(.+?) (?:said|told you)\b",
          r"what did \2 say \1"),
         (r"^what (?:did|have) you (?:say|said)\b", "what did the robot say"),
-        (r"^what (?:have|did) you (?:ever )?(?:learned|learnt|learn) from (.+)", r"what did \1 show you"),
+        (r"^what (?:have|did) you (?:ever )?(?:learned|learn(?:t)?) from (.+)", r"what did \1 show you"),
         (r"^what (?:did|has|have) (.+?) (?:teach|taught) you\b", r"what did \1 show you"),
         (r"^(?:has|have|is|was|were) (.+?) always (?:been )?there\b", r"how long was \1 there"),
         (r"^did (.+?) (?:always )?(?:stay|remain)(?: (?:where (?:it|they) (?:was|were)|there|in (?:its|their) place))?"

@@ -44,7 +44,7 @@ HANDLE = 0.3, 0.5, 0.85
 head. Heads and handles are equally likely to be seen."""
 
 LOW_PART = 0.3
-"""Least height of a part of a thing, as a share of the least height of the kind."""
+"""Minimum height of a part of a thing, as a share of the minimum height of the kind."""
 
 RIGHT = 0.014
 """Error in metres up to which a length is right. The middle is then right to 7 mm, which leaves 3 mm of a centimetre
