@@ -235,7 +235,7 @@ def print_made(samples: int) -> None:
 
 def print_guesses(folder: Path) -> None:
     """Print the share of right facts by the guesses at which they were read; doubtful facts count as asserted."""
-    confidence.MIN_CONFIDENCE = -1.0
+    confidence.MIN_CONFIDENCE = {confidence.Standing.ASSERTED: 0.0}
     shares: dict[str, Score] = {}
     for file in sorted(path for path in folder.glob("*.txt") if path.name != "traps.txt"):
         for text in written_texts(file):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from dataclasses import dataclass
+from typing import Any
 
 from deixis.errors import DeixisError
 from deixis.ontology.graph.facts import Source
@@ -75,7 +76,11 @@ class ScriptError(DeixisError, ValueError):
 
 
 class ScriptTimeError(DeixisError, TimeoutError):
-    """The time limit was reached before a script was read."""
+    """The time limit was reached before a script was read; ``read`` is the ``Script`` of what was read, or None."""
+
+    def __init__(self, message: str, read: Any = None) -> None:
+        super().__init__(message)
+        self.read = read
 
 
 class ScriptFileError(DeixisError, OSError):

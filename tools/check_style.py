@@ -89,8 +89,11 @@ def python_findings(path: Path, source: str) -> Iterator[Finding]:
             yield from _opening_findings(path, node)
         if isinstance(node, ast.Module | ast.ClassDef):
             yield from _attribute_openings(path, node.body[1:])
-        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_") and len(node.name) > MAX_TEST_NAME:
-            yield Finding(path, node.lineno, f"`{node.name}` has {len(node.name)} characters, at most {MAX_TEST_NAME}")
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
+            if len(node.name) > MAX_TEST_NAME:
+                found = f"`{node.name}` has {len(node.name)} characters, at most {MAX_TEST_NAME}"
+                yield Finding(path, node.lineno, found)
+            yield from _phrase_findings(path, node.name.replace("_", " "), node.lineno)
     for token in tokenize.generate_tokens(iter(source.splitlines(keepends=True)).__next__):
         if token.type in (tokenize.COMMENT, tokenize.STRING) or tokenize.tok_name[token.type] == "FSTRING_MIDDLE":
             yield from _phrase_findings(path, token.string, token.start[0])

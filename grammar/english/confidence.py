@@ -4,8 +4,8 @@ Most facts come from clauses that the grammar takes whole, whose phrases name th
 the reader had to choose without support in the words: a clause that begins without a joint after another one, a
 predicate without a subject, the thing that a direction is from, a comma that can join something else, a bare word that
 can be a verb as well. The confidence of a fact is the share of right facts without guesses, multiplied by a factor for
-each guess. Facts below :data:`MIN_CONFIDENCE` are not asserted, and those below :data:`MIN_STATED` are left out: the
-message about their words suggests a sentence that states them.
+each guess. :func:`standing` decides by it what becomes of a fact: it is asserted, listed as doubtful, or left out, and
+the message about its words suggests a sentence that states it.
 """
 
 from __future__ import annotations
@@ -15,10 +15,18 @@ from enum import StrEnum
 
 RIGHT_WITHOUT_GUESSES = 0.87
 """Share of right facts among those without a guess, in texts for which the reader was not changed."""
-MIN_CONFIDENCE = 0.75
-"""Smallest confidence of a fact that is asserted."""
-MIN_STATED = 0.5
-"""Smallest confidence of a fact that is listed at all; below it, the fact is more probably wrong than right."""
+
+
+class Standing(StrEnum):
+    """Use of a fact by its confidence."""
+
+    ASSERTED = "asserted"
+    DOUBTFUL = "doubtful"
+    LEFT_OUT = "left out"
+
+
+MIN_CONFIDENCE = {Standing.ASSERTED: 0.75, Standing.DOUBTFUL: 0.5, Standing.LEFT_OUT: 0.0}
+"""Minimum confidence of a fact of each standing; below 0.5, a fact is more probably wrong than right."""
 
 
 class Guess(StrEnum):
@@ -103,8 +111,8 @@ def confidence(guesses: Iterable[Guess]) -> float:
     return share
 
 
-def is_doubtful(guesses: Iterable[Guess]) -> bool:
-    """Return True for a fact that is not asserted, because too much of it was guessed.
+def standing(guesses: Iterable[Guess]) -> Standing:
+    """Return whether a fact is asserted, listed as doubtful, or left out.
 
     Parameters
     ----------
@@ -113,7 +121,13 @@ def is_doubtful(guesses: Iterable[Guess]) -> bool:
 
     Returns
     -------
-    bool
-        True if the confidence is below :data:`MIN_CONFIDENCE`.
+    Standing
+        First standing whose minimum in :data:`MIN_CONFIDENCE` the confidence of the fact reaches.
+
+    Examples
+    --------
+    >>> [standing(guesses).value for guesses in ([], [Guess.CONTESTED], [Guess.THEY])]
+    ['asserted', 'doubtful', 'left out']
     """
-    return confidence(guesses) < MIN_CONFIDENCE
+    share = confidence(guesses)
+    return next(found for found, least in MIN_CONFIDENCE.items() if share >= least)

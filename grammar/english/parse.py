@@ -34,7 +34,7 @@ from deixis.grammar.english.tokens import (
 from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_nouns
-from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import GENERAL, HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL
 from deixis.grammar.english.vocabulary.verbs import verb_forms
@@ -44,6 +44,8 @@ from deixis.ontology.tbox import Ontology, default_ontology
 
 if TYPE_CHECKING:
     from lark import Lark
+
+    from deixis.grammar.script import Script
 
 
 MIN_GAIN = 2
@@ -91,6 +93,29 @@ def parse_english(
     >>> clause.subject.head, clause.predicates[0].relation, clause.predicates[0].arguments[0].head
     ('fork', 'left', 'plate')
     """
+    found, is_whole = parse_until(text, ontology, deadline)
+    if not is_whole:
+        raise late(found)
+    return found
+
+
+def parse_until(text: str, ontology: Ontology | None, deadline: Deadline) -> tuple[tuple[Sentence, ...], bool]:
+    """Parse the sentences of an English text until a time limit is reached.
+
+    Parameters
+    ----------
+    text
+        The text.
+    ontology
+        Nouns that are known. By default :func:`default_ontology`.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    tuple
+        The sentences in order, and whether they are all of the text.
+    """
     nouns = known_nouns((ontology or default_ontology()).kinds)
     found: list[Sentence] = []
     lead: tuple[Predicate, ...] = ()
@@ -98,12 +123,12 @@ def parse_english(
         if raw.step is None:
             lead = ()
         if deadline.passed:
-            raise ScriptTimeError(_late(found))
+            return tuple(found), False
         words = with_shared_heads(words_of(text, (raw.start, raw.end)), nouns)
         first = 0
         while first < len(words):
             if deadline.passed:
-                raise ScriptTimeError(_late(found))
+                return tuple(found), False
             last = min(len(words), first + MAX_SENTENCE_WORDS)
             while last < len(words) and words[last].start < words[last - 1].end:
                 last -= 1  # keep the parts of a contraction together
@@ -117,11 +142,26 @@ def parse_english(
                 named = _sentence(text, replace(place, heading=False), part, nouns, ())
                 found[-1] = replace(found[-1], place=lead or _place_of_list(text, place, part, nouns, named, True))
                 lead = lead or (found[-1].place if part[0].norm in prepositions() else ())
-    return tuple(found)
+    return tuple(found), True
 
 
-def _late(found: Sequence[Sentence]) -> str:
-    return f"time limit reached after {count(len(found), 'sentence')}; raise the time limit, or shorten the text"
+def late(found: Sequence[Sentence], read: Script | None = None) -> ScriptTimeError:
+    """Return the error of a time limit that was reached before the end of a text.
+
+    Parameters
+    ----------
+    found
+        Sentences that were parsed.
+    read
+        Script of these sentences, or None if they state nothing.
+
+    Returns
+    -------
+    ScriptTimeError
+        Error with the number of sentences, and the script.
+    """
+    message = f"time limit reached after {count(len(found), 'sentence')}; raise the time limit, or shorten the text"
+    return ScriptTimeError(message, read)
 
 
 def _place_of_list(
@@ -137,6 +177,9 @@ def _place_of_list(
     whole = sentence.fragment is None and len(sentence.clauses) == 1 and sentence.clauses[0].subject is None
     if whole and sentence.clauses[0].span[0] == sentence.span[0]:
         return sentence.clauses[0].predicates
+    told = sentence.clauses[0].subject if len(sentence.clauses) == 1 and ends else None
+    if told is not None and told.head in GENERAL and told.plural and told.determiner in ("the", "these"):
+        return sentence.clauses[0].predicates  # 'place the following items on the tray:'
     phrase = sentence.fragment
     if not ends or phrase is None or sentence.clauses or phrase.predicates or phrase.members:
         return ()
@@ -149,6 +192,10 @@ def _sentence(
     text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...]
 ) -> Sentence:
     """Parse a sentence in several ways: by the second best classes of its words, then each joint read otherwise."""
+    if not any(any(c.isalpha() for c in word.norm) for word in words):
+        unplaced = Misunderstood((raw.start, raw.end), "numbers alone say nothing about where a thing is")
+        numbers = sum(word.is_word for word in words)
+        return Sentence(text[raw.start : raw.end], unplaced.span, (), None, numbers, 0, (unplaced,), raw.heading)
     asks = text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?")
     asks = not without_request(words) and asks
     tagger = Tagger(words, nouns)
@@ -298,7 +345,7 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
 
 
-_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ"}
+_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ", "LJ"}
 _ORDERS = frozenset({"command", "search", "other"})
 """Shapes of commands, which show by their verb where they begin."""
 

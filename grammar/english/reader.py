@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from deixis.deadline import Deadline
-from deixis.grammar.english.confidence import MIN_STATED, Guess, confidence, is_doubtful
+from deixis.grammar.english.confidence import Guess, Standing, confidence, standing
 from deixis.grammar.english.discourse.discourse import Discourse
 from deixis.grammar.english.discourse.drafts import Draft as FactDraft
 from deixis.grammar.english.discourse.entities import Entity, Role, names_of
-from deixis.grammar.english.parse import parse_english
+from deixis.grammar.english.parse import late, parse_until
 from deixis.grammar.english.telling.paraphrase import paraphrase
 from deixis.grammar.english.telling.wording import listed
 from deixis.grammar.english.tree import Clause, Misunderstood, Mood, Sentence
@@ -60,7 +60,7 @@ def read_english(
     ScriptError
         If nothing in the text was understood; it holds what was not.
     ScriptTimeError
-        If the time limit is reached.
+        If the time limit is reached; it holds the script of the sentences that were read before.
 
     Examples
     --------
@@ -69,12 +69,27 @@ def read_english(
     ['left(fork, plate)', 'right(knife, plate)']
     """
     ontology = ontology or default_ontology()
-    sentences = parse_english(text, ontology, deadline)
+    sentences, is_whole = parse_until(text, ontology, deadline.share(_SHARE_OF_PARSING))
+    if is_whole:
+        return _script_of(text, file, ontology, sentences)
+    try:
+        read = _script_of(text, file, ontology, sentences) if sentences else None
+    except ScriptError:
+        read = None
+    raise late(sentences, read)
+
+
+_SHARE_OF_PARSING = 0.6
+"""Share of a time limit that parsing may take, so that what was parsed can be read as facts."""
+
+
+def _script_of(text: str, file: str, ontology: Ontology, sentences: tuple[Sentence, ...]) -> Script:
+    """Return the script of the facts that parsed sentences state."""
     discourse = Discourse(text, sentences, dict(ontology.hedges), known_nouns(ontology.kinds))
     drafts = discourse.read()
     writer = _Writer(text, file, ontology, discourse)
     read = [fact for draft in drafts for fact in writer.facts(draft)]
-    stated = tuple(fact for fact in read if fact.confidence >= MIN_STATED)
+    stated = tuple(fact for fact in read if _standing(fact) is not Standing.LEFT_OUT)
     by_sentence: dict[int, list[StatedFact]] = {}
     for fact in read:
         by_sentence.setdefault(fact.sentence, []).append(fact)
@@ -117,7 +132,7 @@ class _Writer:
         for entity in [*discourse.references.entities, *_entities(discourse.drafts)]:
             for leaf in entity.leaves():
                 order[leaf] = None
-        kept = [draft for draft in discourse.drafts if confidence(draft.how.guesses) >= MIN_STATED]
+        kept = [draft for draft in discourse.drafts if standing(draft.how.guesses) is not Standing.LEFT_OUT]
         stated, written = (
             {leaf for e in _entities(drafts) for leaf in e.leaves()} for drafts in (kept, discourse.drafts)
         )
@@ -212,7 +227,7 @@ class _Writer:
         doubted = [
             Misunderstood(fact.span, ", ".join(Guess[name].value for name in fact.guesses), self._plainly(fact))
             for fact in facts
-            if is_doubtful(Guess[name] for name in fact.guesses)
+            if _standing(fact) is not Standing.ASSERTED
         ]
         silent = [
             Misunderstood(clause.span, "this has no relation or property that a fact can state")
@@ -224,7 +239,7 @@ class _Writer:
             text=" ".join(sentence.text.split()),
             span=sentence.span,
             paraphrase=paraphrase(
-                [fact for fact in facts if fact.confidence >= MIN_STATED],
+                [fact for fact in facts if _standing(fact) is not Standing.LEFT_OUT],
                 surface.noun if surface is not None else "table",
                 self.name,
             ),
@@ -295,6 +310,10 @@ class _Writer:
             marks += [stated.condition] if stated.condition else []
             note = f"{content}" + (f"  ({', '.join(marks)})" if marks else "")
             yield Comment(note, Source(source.file, source.line, source.column, source.line, source.column), True)
+
+
+def _standing(fact: StatedFact) -> Standing:
+    return standing(Guess[name] for name in fact.guesses)
 
 
 def _entities(drafts: list[FactDraft]) -> list[Entity]:

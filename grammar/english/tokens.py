@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from deixis.grammar.english.tree import Degree, Span
-from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
+from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
     ADVERBS,
     DETERMINERS,
@@ -31,11 +31,17 @@ MAX_LABEL_WORDS = 5
 """Number of words before a dash that can be a label: *sugar bowl - behind the pot*."""
 MAX_SENTENCE_WORDS = 400
 """Number of words after which a text without a full stop is cut."""
+MAX_SENTENCE_LENGTH = 8000
+"""Number of characters after which it is cut, before its words are told apart."""
 
 MAX_ABBREVIATION = 4
 """Number of letters of a word before a full stop and a number that is an abbreviation: *inv. 112*."""
 
+MAX_ASIDE_WORDS = 9
+"""Number of words of an aside in a verb: *do not, if you can avoid it, put it there*."""
+
 _PAIRED_DASHES = 2
+_AUXILIARIES = MODALS.keys() | {"do", "does", "did"}
 _DASHES = frozenset({"-", "\u2013", "\u2014"})
 _STRUCK = re.compile(r"~~[^~\n]+~~|(?<=\w)\[\d{1,3}\]|(?<=[\s:;,])\((?:[A-Za-z]|[ivx]{1,4}|\d{1,2})\)(?=\s)")
 _CODES = re.compile(
@@ -98,9 +104,16 @@ _DENIALS = {
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("nowhere", "to", "be"): "not",
-    ("'d", "better"): "should", ("had", "better"): "should",
+    ("'d", "better"): "should", ("had", "better"): "should", ("little", "or", "no"): "no", ("few", "or", "no"): "no",
+    ("at", "or", "near"): "near", ("in", "or", "near"): "near", ("on", "or", "near"): "near",
+    **{
+        (has, "no", noun, *being): plain
+        for has, plain in (("has", "is not"), ("have", "are not"))
+        for noun in ("business", "place")
+        for being in ((), ("being",))
+    },
 }  # fmt: skip
-"""Phrases that deny what follows them, advise it or say how it became, with the words that say the same."""
+"""Phrases that deny what follows them, advise it, or say how it became or about where, with words for the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _FORMS_OF_ADDRESS = word_set("mr mrs ms dr st prof capt rev sgt lt col gen")
@@ -121,9 +134,12 @@ _CLITICS = ("'s", "'re", "'m", "'ll", "'d", "'ve")
 _ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z])|\n[ \t]*\n|\n")
 _ALONE = re.compile(r"\([a-z][^().!?\n]{20,}\)(?=\s+[A-Z])")
 """Sentence in parentheses without a full stop of its own."""
+_INCHES = re.compile(r"\d\s*in\.\Z")
+"""Abbreviation of inches after a number at the end of what was read so far."""
 _STEP = re.compile(
-    r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714]"
-    r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
+    r"[ \t]*(?:[\u2022\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714][ \t]*|"
+    r"(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2013]"
+    r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+)",
     re.I,
 )
 _BARE_STEP = re.compile(r"[ \t]*(\d{1,2})[ \t]+(?=([A-Za-z]+))")
@@ -175,7 +191,7 @@ def sentences(text: str) -> Iterator[RawSentence]:
             start += 1
         if start >= length:
             return
-        if start == 0 or text[start - 1] == "\n" or not text[:start].rsplit("\n", 1)[-1].strip():
+        if start == 0 or text[start - 1] == "\n" or not text[text.rfind("\n", 0, start) + 1 : start].strip():
             mark = _step(text, start)
             if mark is not None and mark.end() < length and text[mark.end() : mark.end() + 1] != "\n":
                 step = mark[0].strip()
@@ -184,6 +200,12 @@ def sentences(text: str) -> Iterator[RawSentence]:
         shown = end
         while shown > start and text[shown - 1].isspace():
             shown -= 1
+        while shown - start > MAX_SENTENCE_LENGTH:
+            space = text.rfind(" ", start + 1, start + MAX_SENTENCE_LENGTH)
+            last = space if space > 0 else start + MAX_SENTENCE_LENGTH
+            if any(character.isalnum() for character in text[start:last]):
+                yield RawSentence(start, last, step, False)
+            start = last
         if any(character.isalnum() for character in text[start:shown]):
             yield RawSentence(start, shown, step, heading and step is None)
         step = None
@@ -232,6 +254,12 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
             if "\n" not in line and following[:1].isupper() and len(line) < 60 and not line.rstrip().endswith(","):
                 return match.end(), False
             continue
+        if (
+            mark == "."
+            and _INCHES.search(text, start, match.end())
+            and text[match.end() + 1 : match.end() + 2].islower()
+        ):
+            continue  # '2 in. from the edge'
         if mark == "." or mark.startswith("."):
             before = text[max(start, match.start() - 8) : match.start()].rsplit(None, 1)
             last = before[-1].casefold().lstrip("(") if before else ""
@@ -330,16 +358,24 @@ def _read_and_or(words: list[Word]) -> None:
 
 
 def _read_ranges(words: list[Word]) -> None:
-    """Read *two to three cups* and *two/three cups* as *2-3 cups*, and *5 mm to 10 mm* as *10 mm*."""
+    """Read *two to three cups*, *two/three cups* and *two or three cups* as *2-3 cups*, and *5 mm to 10 mm* as *10 mm*.
+
+    Qualities between which a thing is (*a small to medium bowl*) are left out.
+    """
     for i in range(len(words) - 4, -1, -1):
         norms = [word.norm for word in words[i : i + 5]]
         if i and words[i - 1].norm in ("from", "between"):
+            continue
+        quality = is_adjective(norms[0]) and DIRECTION_WORDS.isdisjoint(norms[:3:2]) and norms[2].isalpha()
+        quality = quality and norms[1] == "to" and norms[2] not in DETERMINERS | POSSESSIVES.keys()
+        if i and quality and words[i - 1].norm in DETERMINERS and norms[3].isalpha():
+            del words[i : i + 3]
             continue
         if len(norms) == 5 and norms[2] == "to" and norms[1] == norms[4] and norms[1] in UNITS:
             del words[i : i + 3]
             continue
         spelled = norms[0].isalpha() and norms[2].isalpha()  # '1/2' is a half
-        if norms[1] != "to" and not (norms[1] == "/" and spelled):
+        if norms[1] != "to" and not (norms[1] in ("/", "or") and spelled):
             continue
         first, last = (NUMBERS.get(n, int(n) if n.isdecimal() and len(n) <= MAX_DIGITS else 0) for n in norms[:3:2])
         if not 0 < first < last:
@@ -347,6 +383,63 @@ def _read_ranges(words: list[Word]) -> None:
         if norms[3].isalpha() and norms[3] not in UNITS.keys() | prepositions().keys() | IS_FORMS | {"and", "o'clock"}:
             words[i].norm, words[i].end = f"{first:g}-{last:g}", words[i + 2].end
             del words[i + 1 : i + 3]
+
+
+def _without_dimensions(words: list[Word]) -> None:
+    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot board*."""
+    i = 0
+    while i < len(words) - 1:
+        end = i + 1
+        while _NUMBER_OF_DIMENSION.fullmatch(words[end - 1].norm) and end < len(words):
+            end += end < len(words) and words[end].norm in UNITS
+            if end + 1 < len(words) and words[end].norm in ("x", "by"):
+                end += 2
+            elif end < len(words) and _SECOND_DIMENSION.fullmatch(words[end].norm):
+                end += 1
+            else:
+                break
+        several = _NUMBER_OF_DIMENSION.fullmatch(words[i].norm) and end > i + 1 + (words[i + 1].norm in UNITS)
+        named = end < len(words) and words[end].norm.isalpha() and words[end].norm not in prepositions()
+        if several and named and (i == 0 or words[i - 1].norm in DETERMINERS | POSSESSIVES.keys() | NUMBERS.keys()):
+            del words[i:end]
+        i += 1
+
+
+_NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
+_SECOND_DIMENSION = re.compile(r"x\d+")
+
+
+def _without_entering(words: list[Word]) -> None:
+    """Read *on the left as you walk in stands a lamp* as *on the left stands a lamp*: left is as one sees it."""
+    for i in range(len(words) - 4, 0, -1):
+        if [word.norm for word in words[i : i + 2]] != ["as", "you"] or words[i + 2].norm not in _ENTERING:
+            continue
+        end = i + 3 + (words[i + 3].norm in ("in", "inside", "through"))
+        form = verb_forms().get(words[end].norm) if end < len(words) else None
+        stands = end < len(words) and (words[end].norm in IS_FORMS or (form is not None and form.kind == "posture"))
+        if stands and words[0].norm in prepositions():
+            del words[i:end]
+
+
+_ENTERING = word_set("enter walk come go step")
+
+
+def _read_halfway(words: list[Word]) -> None:
+    """Read *a bit over half way up the wall* as *halfway up the wall*."""
+    for i in range(len(words) - 3, -1, -1):
+        if [word.norm for word in words[i : i + 2]] == ["half", "way"]:
+            words[i].norm, words[i].end = "halfway", words[i + 1].end
+            del words[i + 1]
+        if words[i].norm != "halfway" or words[i + 1].norm not in ("up", "down", "along", "between"):
+            continue
+        start = i
+        while start and words[start - 1].norm in _NEARLY:
+            start -= 1
+        del words[start:i]
+
+
+_NEARLY = word_set("a bit little over about almost roughly nearly just more than less slightly")
+"""Words before *halfway* that say how nearly it is so."""
 
 
 def _without_set_aside(words: list[Word]) -> None:
@@ -368,6 +461,28 @@ def _read_setups(words: list[Word]) -> None:
                 del words[i + 1]
         elif words[i].norm == "built-in" and words[i - 1].is_word and words[i + 1].norm in prepositions():
             del words[i]
+
+
+def _without_asides_in_verbs(words: list[Word]) -> None:
+    """Leave out what stands between commas in a verb: *do not, however, put it there*.
+
+    A place there stays if it is the only one: *do not, on the left, put a fork*.
+    """
+    for at in range(len(words) - 4, -1, -1):
+        start = at + 1 + (words[at + 1].norm in ("not", "never", "n't"))
+        if words[at].norm not in _AUXILIARIES or words[start].norm != ",":
+            continue
+        end = next((k for k in range(start + 1, len(words)) if not words[k].is_word), len(words))
+        verb = end + 1
+        while verb < len(words) and (words[verb].norm in ADVERBS or words[verb].norm == "be"):
+            verb += 1
+        form = verb_forms().get(words[verb].norm) if verb < len(words) else None
+        if end - start > MAX_ASIDE_WORDS or words[end : end + 1] == [] or words[end].norm != "," or form is None:
+            continue
+        later = any(word.norm in prepositions() for word in words[verb + 1 :])
+        ends_group = form.form == "base" or (words[verb - 1].norm == "be" and form.form in ("past", "participle"))
+        if ends_group and (words[start + 1].norm not in prepositions() or later):
+            del words[start : end + 1]
 
 
 def _without_settings(words: list[Word]) -> None:
@@ -392,7 +507,9 @@ def _read_facing_commands(words: list[Word]) -> None:
 
 
 _PHRASE_OF_SETUP = frozenset({"in", "for", "with"})
-_MEASURING_PARTS = word_set("eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof")
+_MEASURING_PARTS = word_set(
+    "eye elbow shoulder waist knee chest head hip ear chin heart arm seat counter ceiling roof ground floor table"
+)
 """Parts of the body, and of a room, at whose level a thing can be."""
 
 
@@ -498,9 +615,50 @@ def _deny_contrasts(words: list[Word]) -> None:
         if [word.norm for word in words[i : i + 2]] == ["all", "but"] and words[i + 3].norm == "of":
             words[i].norm, words[i].end = "most", words[i + 2].end  # 'all but one of the forks'
             del words[i + 1 : i + 3]
-    for i in range(1, len(words) - 2):
-        if (words[i].norm, words[i + 1].norm) in _CONTRASTS and words[i - 1].norm not in (";", ":", "."):
+    for i in range(len(words) - 3, 0, -1):
+        if (words[i].norm, words[i + 1].norm) not in _CONTRASTS or words[i - 1].norm in (";", ":", "."):
+            continue
+        end = next((k for k in range(i + 2, len(words) - 1) if words[k].norm == ","), 0)
+        fronted = words[i - 1].norm == "," or words[0].norm in prepositions()
+        if fronted and end and words[end + 1].norm in PUT_VERBS:
+            del words[i : end + (words[i - 1].norm == ",")]  # 'on the mat, rather than the fork, put the spoon'
+        else:
             words[i].norm, words[i + 1].norm = ",", "not"
+
+
+def _without_inserted_adverbs(words: list[Word]) -> None:
+    """Read *there should, however, be a cup* without the commas, which part a modal verb from its verb."""
+    for i in range(len(words) - 4, 0, -1):
+        inserted = [word.norm for word in words[i : i + 3 : 2]] == [",", ","]
+        said = words[i + 1].norm in ADVERBS | HEDGES and words[i - 1].norm in MODALS.keys() | IS_FORMS
+        if inserted and said and (words[i + 3].norm in IS_FORMS or words[i + 3].norm in verb_forms()):
+            del words[i + 2], words[i]
+
+
+def _without_following(words: list[Word]) -> None:
+    """Read *put the following cups on it* as *put the cups on it*, and *the following* alone as *the items*."""
+    for i in range(len(words) - 2, 0, -1):
+        if words[i].norm == "following" and words[i - 1].norm in ("the", "these"):
+            if words[i + 1].norm.isalpha() and words[i + 1].norm not in prepositions():
+                del words[i]
+            else:
+                words[i].norm = "items"
+
+
+def _without_and_such(words: list[Word]) -> None:
+    """Read *plates and cups and such* without *and such*."""
+    for i in range(len(words) - 2, 1, -1):
+        last = i + 2 == len(words) or not words[i + 2].is_word
+        if [word.norm for word in words[i : i + 2]] in (["and", "such"], ["and", "so"], ["or", "so"]) and last:
+            del words[i : i + 2]
+
+
+def _without_particles_of_filling(words: list[Word]) -> None:
+    """Read *fill in the corners* and *fill up the jar* without *in* and *up*."""
+    for i in range(len(words) - 2, 0, -1):
+        filled = words[i - 1].norm in ("fill", "filled", "filling") and words[i].norm in ("in", "up")
+        if filled and words[i + 1].norm in DETERMINERS | POSSESSIVES.keys():
+            del words[i]
 
 
 def _count_halves(words: list[Word]) -> None:
@@ -760,13 +918,14 @@ def words_of(text: str, span: Span) -> list[Word]:
     ['the', 'cup', 'is', 'not', 'on', 'the', 'left', 'side', '.']
     """
     found: list[Word] = []
-    struck = [match.span() for marks in (_STRUCK, _CODES) for match in marks.finditer(text, *span)]
-    struck += [match.span() for match in _IN_BRACKETS.finditer(text, *span) if _says_no_place(match[1])]
-    struck += _depicted(text, span)
+    left_out = [match.span() for marks in (_STRUCK, _CODES) for match in marks.finditer(text, *span)]
+    left_out += [match.span() for match in _IN_BRACKETS.finditer(text, *span) if _says_no_place(match[1])]
+    left_out += _depicted(text, span)
+    struck = {at for first, last in left_out for at in range(first, last)}
     for match in _WORD.finditer(text, *span):
         raw = match[0]
         start, end = match.span()
-        if any(first <= start < last for first, last in struck):
+        if start in struck:
             continue
         norm = raw.casefold().replace("\u2019", "'") if raw.isascii() or "\u2019" in raw else _folded(raw)
         norm = "pick\u00a0up" if norm == "pickup" and not found else TYPOS.get(norm, norm)
@@ -779,12 +938,22 @@ def words_of(text: str, span: Span) -> list[Word]:
                 found.append(Word(raw, "inches", start, end, True))
             elif norm in ("and", "at"):
                 found.append(Word(raw, norm, start, end, True))
+            elif raw == "\u00d7":
+                found.append(Word(raw, "x", start, end, True))
             elif raw in _ARROWS:
                 found.append(Word(raw, ":", start, end, False))
             elif unicodedata.category(raw)[0] in "SMC" and raw not in "<>=":
                 continue  # a pictograph, or a mark of one
             elif raw in _LENGTH_MARKS and found and _is_length(text, span, found[-1], start):
                 found[-1].norm, found[-1].end = f"{found[-1].norm}-{_LENGTH_MARKS[raw]}", end
+            elif (
+                raw == "."
+                and len(found) > 1
+                and found[-1].norm == "in"
+                and found[-2].norm[-1:].isdigit()
+                and end < span[1]
+            ):
+                found[-1].norm = "inches"
             elif raw == "." and found and found[-1].norm in _ABBREVIATIONS and found[-1].end == start and end < span[1]:
                 continue
             elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|[]":
@@ -804,13 +973,21 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_opposites(found)
     _read_and_or(found)
     _read_ranges(found)
+    _without_dimensions(found)
+    _read_halfway(found)
+    _without_entering(found)
     _without_set_aside(found)
     _read_setups(found)
+    _without_asides_in_verbs(found)
     _without_settings(found)
     _read_facing_commands(found)
     _read_fractions(found)
     _without_cleft(found)
     _deny_contrasts(found)
+    _without_inserted_adverbs(found)
+    _without_following(found)
+    _without_particles_of_filling(found)
+    _without_and_such(found)
     _count_halves(found)
     _without_floating_each(found)
     _join_corrections(found)
@@ -853,7 +1030,8 @@ def _is_length(text: str, span: tuple[int, int], number: Word, at: int) -> bool:
     mark = text[at]
     opened = sum(text[span[0] : at].count(quote) for quote in {mark, "\u201c" if mark in '"\u201d' else mark})
     apostrophes = len(re.findall(rf"(?<=\w){mark}(?=\w)", text[span[0] : at]))
-    return number.norm.isdigit() and number.end == at and (opened - apostrophes) % 2 == 0
+    quotes = mark not in "\u2032\u2033" and (opened - apostrophes) % 2 == 1
+    return number.norm.isdigit() and number.end == at and not quotes
 
 
 def _folded(raw: str) -> str:

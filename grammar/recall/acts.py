@@ -131,6 +131,7 @@ def _active(found: re.Match[str]) -> str:
 _REWORDED = tuple(
     (re.compile(pattern), wording)
     for pattern, wording in (
+        (r"^what (?=(?:thing|object|one)s?\b)", "which "),
         (r"^(?:who (?:was|is) it (?:who|that)|wh(?:ich|at) (?:person|one of (?:us|them))|whose hand)\b", "who"),
         (rf"^who (?:has|have|had|is|was)(?: just| been)* (?={_VERB}\b)", "who "),
         (rf"^who (?:is|was) responsible for (?={_VERB}\b)", "who "),
@@ -149,6 +150,9 @@ _REWORDED = tuple(
         (r"^(?:has|have|did) (?:any|some) ?(?:one|body) (?:ever )?(?=(?:touch|handl|us|push|grab|put|plac|set|"
          r"lay|laid|brought|bring)\w* )", "who "),
         (rf"^((?:what|when|where|how (?:many \w+|often)) |)(did|have|has) you (?={_VERB}\b)", r"\1\2 the robot "),
+        (rf"^what (?:was|were|has been|have been) ({ACT_PATTERN}) by whom$", r"who \1 something"),
+        (rf"^(who (?:{_VERB}) .+?) where (?:it|they) (?:is|are)(?: now)?$", r"\1 last"),
+        (r"^what (?:did|have|has) (?:you see )?(.+?) (?:do|done) (?:to|with) (.+)", r"did \1 handle \2"),
         (r"^what (?:did|have|has) (?:you see )?(.+?) (?:do|done)\b", r"what did \1 handle"),
         (rf"\b(was|were|been) (.+?) (first|last) ({ACT_PATTERN})$", r"\1 \2 \4 \3"),
         (rf"^by (?P<asked>who)m? (?:was|were|has|have) (?P<thing>.+?) (?:been )?(?P<verb>{ACT_PATTERN})(?P<person>)",

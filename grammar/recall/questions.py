@@ -67,6 +67,10 @@ WORDINGS = (
     "when did you last see the cup?",
     "what have I shown you?",
     "what changed since noon?",
+    "what happened to the cup?",
+    "who was here?",
+    "who was here since noon?",
+    "how many people were here?",
     "what did Ada say?",
     "what did I say in the last 5 minutes?",
     "who showed you the fork?",
@@ -106,6 +110,7 @@ _NUMBERS = {
 _NUMBER_WORDS = "|".join(sorted(_NUMBERS, key=len, reverse=True))
 _COUNTED = re.compile(rf"\b({_NUMBER_WORDS}) (?=(?:second|minute|hour|day|week)s?\b)")
 
+_HERE = r"(?:here|there|around|present|at (?:the|this|my|our) (?:table|desk)|in (?:the|this|my|our) (?:room|kitchen))"
 _ANYONE = r"(?:(?:any|some) ?(?:one|body)|people)"
 _REWORDED = tuple(
     (re.compile(pattern), wording)
@@ -114,6 +119,32 @@ _REWORDED = tuple(
         (r"^where (?:is|are|has|have) (.+?) (?:gone|went)\b(?: to\b)?", r"where did \1 go"),
         (r"^(?:since when|how long) (?:is|are|was|were|has|have) (.+?) (?:been )?where (?:it is|they are)(?: now)?$",
          r"where is \1"),
+        (rf"^who is (?:now )?{_HERE}(?: (?:right )?now)?$", "who was there in the last 1 minute"),
+        (rf"^who (?:was|were|has been|have been)(?: (?:just|still))? {_HERE}\b", "who was there"),
+        (r"^(?:whom?|which (?:people|persons)) (?:did|have) you (?:see|seen|meet|met|hear|heard)\b", "who was there"),
+        (rf"^(?:was|were|has|have) (?:{_ANYONE})(?: been)? {_HERE}\b", "who was there"),
+        (rf"^how many (?:people|persons) (?:were|are|have been) {_HERE}\b", "how many people were there"),
+        (r"^(?:was|were|has|have) ([\w ]+?)(?: ever)?(?: been)? (?:here|around|present)\b", r"was \1 there"),
+        (r"^(?:when|how long) (?:was|were|has|have) ([\w ]+?)(?: been)? (?:here|around|present)\b",
+         r"how long was \1 there"),
+        (r"^who (?:spoke|talked|said (?:any|some)thing)(?: to you)?\b", "what did anyone say"),
+        (r"^who did you (?:talk|speak|listen) (?:to|with)\b", "what did anyone say"),
+        (r"^what (?:was|were) the (first|last) (?:thing|sentence|word)s? (?:that )?(.+?) (?:said|told you)\b",
+         r"what did \2 say \1"),
+        (r"^what (?:did|have) you (?:say|said)\b", "what did the robot say"),
+        (r"^what (?:have|did) you (?:ever )?(?:learned|learnt|learn) from (.+)", r"what did \1 show you"),
+        (r"^what (?:did|has|have) (.+?) (?:teach|taught) you\b", r"what did \1 show you"),
+        (r"^(?:has|have|is|was|were) (.+?) always (?:been )?there\b", r"how long was \1 there"),
+        (r"^did (.+?) (?:always )?(?:stay|remain)(?: (?:where (?:it|they) (?:was|were)|there|in (?:its|their) place))?"
+         r"(?: all the time)?$", r"how long was \1 there"),
+        (r"^(?:since when|how long) (?:is|are|was|were|has|have) (.+?)(?: been)? (?:gone|missing|away)\b",
+         r"when did \1 go"),
+        (r"^where do(?:es)? (.+?) (?:belong|live)\b|^where (?:is|are) (.+?) (?:usually |normally )?(?:kept|stored)\b",
+         lambda found: f"what did anyone say about {found[1] or found[2]}"),
+        (r"^where should (.+?) (?:be (?:put|kept|stored)|be|go|stand|lie)\b", r"what did anyone say about \1"),
+        (r"^where did (.+?) end up\b", r"where did \1 go"),
+        (r"^where (?:is|are) (?:everything|all (?:of )?the (?:things|objects))\b", "what is there"),
+        (r"^(?:what|how) did (?:the|this|my|our) (?:table|desk) look(?: like)?\b", "what was there"),
         (r"^who (?:told|said)(?: (?:you|us|me|anything|something))* about\b", "what did anyone say about"),
         (r"^where did (.+?) used? to be\b", r"where was \1 before"),
         (r"\b(?:has|have) gone\b", "went"),
@@ -146,7 +177,8 @@ _REWORDED = tuple(
          lambda found: f"{found[1]} did you last see {found[2] or found[3]}"),
         (r"^when (was|were) (.+) there$", r"how long \1 \2 there"),
         (r"^(?:has|did) (?:any|some)thing (?:changed?|happen(?:ed)?)\b(?! to)", "what changed"),
-        (r"^what (?:has )?happened (?:to|with) (.+)$", r"how long was \1 there"),
+        (r"^what (?:(?:has |had )?(?:happened (?:to|with)|become of)|became of) ", "what happened about "),
+        (r"^what (?:is|has|was) (?:been )?(?:going on|happening)\b|^what went on\b", "what happened"),
     )
 )  # fmt: skip
 """Wordings that ask for the same as others, each a pattern and its replacement."""

@@ -18,5 +18,8 @@ it is no longer expected."""
 PUT, MOVED, TOOK = "put", "moved", "took"
 """Predicates of what a person did: put a new thing down, moved a thing to another place, and took a thing away."""
 
+SAYS = "says"
+"""Predicate of what the robot says."""
+
 ACTS = frozenset({PUT, MOVED, TOOK})
 """Predicates whose subject is the person who changed the place of the object."""

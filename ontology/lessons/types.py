@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, Protocol
 
-from deixis.answers import Answer, count
+from deixis.answers import Answer, count, rounded
 from deixis.arguments import checks_arguments
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
@@ -145,7 +145,7 @@ class Match(Answer):
 
     def summary(self) -> str:
         """Return the object, its thing, and how probable that is."""
-        probability = "" if self.probability is None else f", probability {self.probability:.3g}"
+        probability = "" if self.probability is None else f", probability {rounded(self.probability)}"
         return f"{self.object} is {self.perceived}{probability}{'' if self.decided else ', undecided'}"
 
     @property

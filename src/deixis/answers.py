@@ -146,6 +146,27 @@ def _renderers() -> Any:
     return import_module("deixis.report.renderers")
 
 
+def rounded(probability: float) -> str:
+    """Return a probability with three digits; 1 only where it is 1.
+
+    Parameters
+    ----------
+    probability
+        The probability, in [0, 1].
+
+    Returns
+    -------
+    str
+        The digits.
+
+    Examples
+    --------
+    >>> rounded(0.99974), rounded(0.4567), rounded(1.0)
+    ('0.999', '0.457', '1')
+    """
+    return f"{probability if probability == 1.0 else min(probability, 0.999):.3g}"
+
+
 def count(number: int, noun: str) -> str:
     """Return a number with its noun, in the singular for 1.
 

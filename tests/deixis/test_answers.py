@@ -166,6 +166,15 @@ def test_pandas_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) ->
         SCENE.to_dataframe()
 
 
+def test_a_probability_below_1_is_not_shown_as_1(answers: dict[str, Answer]) -> None:
+    grounding = answers["Grounding"]
+    assert isinstance(grounding, deixis.Grounding)
+    match = grounding.matches["napkin"]
+    assert match.probability is not None and 0.9995 < match.probability < 1
+    assert str(match) == "Match napkin is o2, probability 0.999"
+    assert "<td style='text-align:left'>0.999</td>" in (grounding._repr_html_() or "")
+
+
 def test_notebooks_show_tables_and_escape_names() -> None:
     script = deixis.read_script(text='"<b>" left of plate')
     shown = script._repr_html_()

@@ -63,7 +63,7 @@ def test_taught_learned_and_recognised_without_a_file(seen: Scene, tmp_path: Pat
     assert sorted(path.name for path in tmp_path.iterdir()) == ["memory"]
 
 
-def test_one_scene_twice_in_a_call_is_as_call_after_call(seen: Scene, tmp_path: Path) -> None:
+def test_one_scene_twice_in_a_call_equals_two_calls(seen: Scene, tmp_path: Path) -> None:
     examples = [(deixis.read_script(text=text), seen) for text in (TEA, TEA, TEA.replace("fork", "cake_fork"))]
     kept = []
     for place in ("at once", "in turn"):
@@ -89,7 +89,7 @@ def test_one_scene_twice_is_taken_back_where_a_call_fails(
         assert session.categories() == {}
 
 
-def test_from_memory_and_from_files_the_same_is_kept(seen: Scene, tmp_path: Path) -> None:
+def test_lessons_from_memory_and_from_files_are_equal(seen: Scene, tmp_path: Path) -> None:
     written = deixis.write_scene(seen, tmp_path / "tea.scene.json")
     read = deixis.read_scene(tmp_path / "tea.scene.json")
     assert read == written != seen

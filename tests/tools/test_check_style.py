@@ -28,6 +28,12 @@ def test_thresholds_are_minimum_or_maximum_values(opening: str) -> None:
     assert messages('LIKELY = 0.9\n"""Distribution from which samples are drawn."""\n') == []
 
 
+@pytest.mark.parametrize("name", ["a_spork_is_no_fork", "few_scenes_are_fitted_anew", "a_loss_is_told_at_once"])
+def test_wordings_are_found_in_names_of_tests(name: str) -> None:
+    (found,) = messages(f"def test_{name}():\n    pass\n")
+    assert found.startswith("module.py:1: ")
+
+
 def test_function_docstrings_start_with_a_verb() -> None:
     assert messages('def area():\n    """Return the area."""\n') == []
     (found,) = messages('def area():\n    """The area."""\n')

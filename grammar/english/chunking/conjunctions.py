@@ -38,7 +38,7 @@ class JointChunker(VerbChunker):
             return Chunk("REL", at, at + 1)
         follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
         if norm in ("which", "who", "whom", "where") and follows_noun and at > 0:
-            return Chunk("REL", at, at + 1)
+            return Chunk("REL", at, at + 1, norm)
         if (norm == "unlike" and not previous) or (
             not previous and (norm, after) in (("instead", "of"), ("rather", "than"))
         ):
@@ -132,7 +132,8 @@ class JointChunker(VerbChunker):
         participial = form is not None and form.form in ("past", "participle") and previous in ("COMMA", "")
         if norm == "as" and participial and self.norms[at + 2] not in IS_FORMS:
             return Chunk("ADVERB", at, at + 2, "as told")  # 'as left on Friday'
-        if norm == "as" and previous == "COMMA" and self._clause_follows(at + 1) and after not in PRONOUNS:
+        reason = norm == "as" and after not in PRONOUNS and self._clause_follows(at + 1)
+        if reason and (previous == "COMMA" or (not previous and self._is_state(at + 1))):
             return Chunk("SUB", at, at + 1, "because")  # 'behind the jar, as guests should not see it'
         if norm == "as" and after in ("you", "if", "seen", "viewed", "one", "i", "we"):
             return Chunk("SUB", at, at + 1, "as")
@@ -235,6 +236,11 @@ class JointChunker(VerbChunker):
             or norm in MODALS
             or (form is not None and form.form in ("s", "past", "base") and norm not in ("left", "set"))
         )
+
+    def _is_state(self, at: int) -> bool:
+        """Return True if the verb after the noun phrase that begins here is *is*: *as the bowl is on the left, …*."""
+        found = self.nouns.phrase(at, "SUB") if self.nouns.starts(at) else None
+        return found is not None and self.norms[found[0]] in IS_FORMS
 
     def _end_of_free_relative(self, at: int) -> int | None:
         """Return the end of *whatever I have used* before the verb of which it is the subject."""

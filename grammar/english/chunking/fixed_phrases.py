@@ -304,6 +304,7 @@ class FixedPhraseChunker(JointChunker):
                 self.nouns.is_determiner(at + 2)
                 or self.norms[at + 2] in ("it", "them")
                 or ((self.norms[at - 1] in _JUDGEMENTS or self._judges(at)) and self.nouns.is_noun(at + 2))
+                or self._makes_sense(at)
             )
         ):
             before = self.norms[:at]
@@ -476,13 +477,17 @@ class FixedPhraseChunker(JointChunker):
             i -= 1
         if self.norms[i - 1] == "no":
             return False  # 'there is no need to put it there'
-        if self.norms[i] in _GOVERNORS or (self.norms[i] == "sense" and self.norms[i - 1] in _SENSIBLE):
+        if self.norms[i] in _GOVERNORS or self._makes_sense(i + 1):
             return True
         first = next((k for k in range(len(self.chunks) - 1, -1, -1) if self.chunks[k].type in JOINT_TYPES), -1)
         if self._previous() == "NP" and any(c.type in ("PUT", "DO", "FIND") for c in self.chunks[first + 1 :]):
             return True  # 'take the cup to put it on the tray'
         joined = self.norms[i] in ("and", "then", ",", "or")
         return joined and not _GOVERNORS.isdisjoint(self.norms[:i])
+
+    def _makes_sense(self, at: int) -> bool:
+        """Return True after *it makes sense*, *it makes the most sense*."""
+        return self.norms[at - 1] == "sense" and self.norms[at - 2] in _SENSIBLE
 
     def _opinion(self, at: int) -> tuple[int, VerbGroup] | None:
         """Return the end and the verb of *I think that*, *we don't believe that*, which make a clause probable."""
@@ -542,7 +547,7 @@ class FixedPhraseChunker(JointChunker):
         if self.norms[i] not in ("you", "we", "i"):
             return None
         i += 1
-        while self.norms[i] in ADVERBS or self.norms[i] in ("'ll", "will", "would", "'d", "should", "must"):
+        while self.norms[i] in ADVERBS or self.norms[i] in _WISHING_MODALS:
             i += 1
         if (
             self.norms[i] in ("are", "'re", "am", "'m")
@@ -554,7 +559,7 @@ class FixedPhraseChunker(JointChunker):
             i += 1
         if self.norms[i] in ("tell", "ask") and "to" in self.norms[i + 2 : i + 4]:
             i = self.norms.index("to", i)
-        wants = self.norms[i] in ("want", "need", "have", "like") and not (
+        wants = self.norms[i] in ("want", "need", "have", "like", "prefer", "love") and not (
             (self.norms[i] == "have" and self.norms[i + 1] != "to") or self.norms[i + 1] in NEGATIONS
         )
         if wants:
@@ -679,10 +684,12 @@ _GOVERNORS = word_set(
 _SENSIBLE = word_set("make makes good more most perfect")
 """Words before *sense* with which an infinitive is advised: *it makes sense to keep it there*."""
 
-_RECOMMENDING = frozenset({"recommend"})
-"""Verbs of writers whose *-ing* form is a command, unlike that of *suggest*: *we recommend placing it there*."""
-_RECOMMENDED_SO = word_set("do would 'd also highly strongly always really")
+_RECOMMENDING = word_set("recommend love like enjoy prefer")
+"""Verbs of writers whose *-ing* form is a command, unlike that of *suggest*: *we recommend*, *I love placing it*."""
+_RECOMMENDED_SO = word_set("do would 'd also highly strongly always really personally usually typically often")
 """Words between a writer and what is recommended."""
+_WISHING_MODALS = word_set("'ll will would 'd should must may might could")
+"""Modals before what a person wants: *you may want to put it there*."""
 _TRYING = word_set("consider try recommend begin start continue")
 """Verbs of commands whose *-ing* form is the command: *try placing it there*."""
 
@@ -694,7 +701,8 @@ _FREQUENCIES = word_set(
     " later soon first"
 )
 _FREQUENT_PAIRS = (["every", "day"], ["every", "week"], ["all", "day"], ["each", "day"], ["the", "most"], ["a", "lot"],
-                   ["right", "away"], ["the", "least"], ["each", "morning"], ["every", "morning"])  # fmt: skip
+                   ["right", "away"], ["the", "least"], ["each", "morning"], ["every", "morning"], ["that", "week"],
+                   ["this", "week"], ["every", "week"], ["that", "day"], ["that", "evening"])  # fmt: skip
 """Words that tell how often a thing is used, which are not about its place."""
 
 _UNDER_OR_BEHIND = frozenset({"behind", "under", "underneath", "beneath", "between", "beside", "below", "next"})

@@ -17,7 +17,7 @@ class ModifierFinder(NounFinder):
     """Finder of the modifiers of nouns."""
 
     def _modifiers(self, at: int, determined: bool) -> tuple[int, tuple[Adjective, ...]]:
-        i, found = at, []
+        i, found, choice = at, [], False
         norms = self.norms
         while i < len(self.words) and self._nouns.compound(norms, i) is None:
             norm = norms[i]
@@ -110,6 +110,7 @@ class ModifierFinder(NounFinder):
                 i += 1
                 continue
             if found and norm in ("and", ",", "/", "or", "but") and self._joins_adjectives(i):
+                choice = choice or norm in ("/", "or")
                 i += 1
                 continue
             if not self._modifies(i, determined or bool(found)):
@@ -121,6 +122,9 @@ class ModifierFinder(NounFinder):
                 i += 1
             elif norms[i] in ("hand", "side") and found[-1].dimension == "position" and self._nounish(i + 1):
                 i += 1
+        if choice:  # 'a plastic or rubber foot' need not be of plastic
+            several = [a.dimension for a in found]
+            found = [a for a in found if several.count(a.dimension) == 1 or a.dimension in ("position", "rank")]
         return i, tuple(found)
 
     def _adjective(self, at: int, degree: Degree | None, start: int) -> Adjective:

@@ -45,6 +45,7 @@ _ENDINGS = ("spoon", "cup")
 
 _OPPOSITES = (
     {"front", "back"}, {"front", "rear"}, {"left", "right"}, {"top", "bottom"}, {"upper", "lower"}, {"inner", "outer"},
+    {"top", "middle"}, {"middle", "bottom"}, {"left", "middle"}, {"middle", "right"},
     {"side", "back"}, {"side", "front"}, {"side", "top"}, {"side", "bottom"}, {"first", "second"}, {"main", "side"},
 )  # fmt: skip
 """Pairs of modifiers that no single thing has both of."""
@@ -60,6 +61,7 @@ def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
     """Return the words of a sentence with the words that coordinated compounds share in each of them.
 
     Opposite sides share any plural that is not a place: *the front and back rails*, but not *the left and right sides*.
+    After *or* they share a known singular and a place as well: *the top or middle shelf*.
 
     Parameters
     ----------
@@ -106,9 +108,11 @@ def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
             continue
         if joint in ("and", "or"):
             opposite = {first, second} in _OPPOSITES
-            plural = _plural_head(found, at + 3, nouns) if opposite and (first, second) not in _ONE_THING else []
-            shared = None if plural else _shared_head(found, at, nouns, sure=not opens or compound)
-            found[at + 1 : at + 1] = [Word(word, word, found[at].start, found[at].end, False) for word in plural]
+            heads = (
+                _head_of_sides(found, at + 3, nouns, joint) if opposite and (first, second) not in _ONE_THING else []
+            )
+            shared = None if heads else _shared_head(found, at, nouns, sure=not opens or compound)
+            found[at + 1 : at + 1] = [Word(word, word, found[at].start, found[at].end, False) for word in heads]
             if shared is not None:
                 found.insert(at + 1, Word(shared, shared, found[at].start, found[at].end, False))
         elif second in ("and", "or") and _share_modifier(first, joint, head, nouns):
@@ -146,8 +150,8 @@ def _shared_head(words: Sequence[Word], at: int, nouns: KnownNouns, sure: bool) 
     return head if several and modified and nouns.knows(head) else None
 
 
-def _plural_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> list[str]:
-    """Return the words of a plural that begins at a word: *surround speakers*; none for a place and a singular."""
+def _head_of_sides(words: Sequence[Word], at: int, nouns: KnownNouns, joint: str) -> list[str]:
+    """Return the words of the noun that two sides share: *surround speakers*, after *or* also *shelf*."""
     head: list[str] = []
     for word in words[at : at + _MAX_HEAD]:
         if not word.norm.isalpha() or word.norm in prepositions() or word.norm in _CLOSED:
@@ -155,6 +159,8 @@ def _plural_head(words: Sequence[Word], at: int, nouns: KnownNouns) -> list[str]
         head.append(word.norm)
         one, plural = nouns.singular(word.norm)
         form = verb_forms().get(word.norm)
+        if joint == "or" and not plural and (nouns.knows(one) or one in PLACE_NOUNS):
+            return head
         if plural:
             is_verb = form is not None and form.form == "s" and not nouns.knows(word.norm)
             return [] if one in PLACE_NOUNS or is_verb else head

@@ -584,8 +584,9 @@ class VerbChunker(RelatorChunker):
         """Return the participle of a verb that no table holds: *the window shrouded in fog*."""
         norm = self.norms[i]
         previous = self._previous()
-        if self.nouns.is_participle_of_one(i):
-            return None
+        modifies = norm.endswith("ed") and self.nouns.is_noun(i + 1) and not is_adjective(self.norms[i + 1])
+        if self.nouns.is_participle_of_one(i) or modifies:
+            return None  # 'berries and fresh-squeezed juice'
         if previous == "ADVERB" and len(self.chunks) > 1 and self.chunks[-2].type in ("COMMA", "BE"):
             previous = self.chunks[-2].type  # 'a loaf, perfectly preserved'
         if (

@@ -483,7 +483,7 @@ class Assembly:
             denied = tuple(replace(p, positive=not p.positive) for p in phrase.predicates)
             phrase = replace(phrase, negated=False, predicates=denied)
         more = (*noun.extra, *(p for part in predications for p in part.predicates))
-        if self.clauses and self.text[: span[0]].rstrip().casefold().endswith("because"):
+        if self.clauses and self.text[self.raw.start : span[0]].rstrip().casefold().endswith("because"):
             misunderstood(span, "a reason without a verb does not say where something is")
             return  # 'because the postman trips over it'
         if self.asks:
@@ -759,14 +759,24 @@ class Assembly:
             guesses=frozenset({Guess.ACTION} if acts and shape == "statement" else ()),
             condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
         )  # fmt: skip
-        self._append(clause, link)
-        for noun, modifiers in absolute:
-            self._append(replace(clause, subject=noun, predicates=modifiers, choices=(), existential=False), ",")
+        beside = [
+            replace(clause, subject=noun, predicates=modifiers, choices=(), existential=False)
+            for noun, modifiers in absolute
+        ]
+        first = 0
+        while phrase is not None and first < len(absolute) and absolute[first][0].span[1] <= phrase.span[0]:
+            self._append(beside[first], link)  # 'with the plate in front of you, lay the fork on its left'
+            first += 1
+        self._append(clause, "," if first else link)
+        for other in beside[first:]:
+            self._append(other, ",")
 
     def _added_about(self, phrase: NounPhrase) -> tuple[Predicate, ...]:
         """Return what a relative clause after a comma says: *I love the clock, which hangs over the door*."""
         predicates = phrase.predicates
-        if not predicates or not self.text[: predicates[0].span[0]].rstrip().endswith((", which", ", who")):
+        if not predicates or not self.text[self.raw.start : predicates[0].span[0]].rstrip().endswith(
+            (", which", ", who")
+        ):
             return ()
         return predicates
 

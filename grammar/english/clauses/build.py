@@ -131,7 +131,7 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in predications
             )
-        predications = with_support(group, predications or ())
+        predications = with_support(group, _against_supports(group.lemma, predications or ()))
         return Built(
             "command", raws, (Verb(group, moved(group, predications, put.span) if predications else (), put.span),)
         )
@@ -213,7 +213,7 @@ class Builder(Transformer[Any, Built]):
         nps, joined = (whole := _with_own_parts((nps, *joined)))[0], whole[1:]
         phrase, extra = nps.phrase, nps.extra
         for joint, mods in zip(joined[::2], joined[1::2], strict=True):
-            if joint.type == "OJ":
+            if joint.type in ("OJ", "LJ"):
                 one = mods.phrase.pronoun == "one" and mods.phrase.determiner == "the" and not mods.phrase.negated
                 one = one and mods.phrase.plural == phrase.plural
                 if (
@@ -347,6 +347,7 @@ class Builder(Transformer[Any, Built]):
     def complement(self, chunk: Chunk, of: Chunk, thing: Noun) -> NounPhrase:
         """Return *the end of the shelf* and *a pair of boots*."""
         phrase: NounPhrase = chunk.value
+        said = thing.phrase.predicates
         thing, its = _of_the_subject(thing)
         inner = thing.phrase
         on_it = tuple(p for p in inner.predicates if any(a.pronoun in ("it", "they") for a in p.arguments))
@@ -367,6 +368,9 @@ class Builder(Transformer[Any, Built]):
             return replace(inner, determiner=phrase.determiner if phrase.determiner != "each" else "the", span=span)
         if not phrase.head and phrase.count is not None and phrase.determiner == "a":  # 'a pair of boots'
             return replace(inner, count=phrase.count, plural=True, span=union(phrase.span, inner.span))
+        bare = _is_bare(inner) and all(p.positive for p in inner.predicates)
+        if bare and inner.predicates and phrase.head and not is_place(phrase) and last_word(phrase.head) not in PARTS:
+            inner, its = replace(inner, predicates=()), said  # 'a glass of water on the table'
         return replace(
             phrase, of=inner, span=union(phrase.span, inner.span), predicates=(*phrase.predicates, *thing.extra, *its)
         )
@@ -626,6 +630,11 @@ class Builder(Transformer[Any, Built]):
 
     def holding(self, chunk: Chunk, nps: Noun) -> tuple[Predicate, ...]:
         """Return the predicates of *facing the window*, *holding a pen*."""
+        phrase = nps.phrase
+        held = chunk.value.lemma in ("contain", "hold") and _is_bare(phrase) and not phrase.members
+        if held and all(p.positive and p.relation in ("on", "inside") for p in phrase.predicates):
+            inner = Noun(replace(phrase, predicates=()), nps.extra)  # 'a box containing pens on the shelf'
+            return (*transitive(chunk.value, inner, chunk.span), *phrase.predicates)
         return transitive(chunk.value, nps, chunk.span)
 
     def withs(self, chunk: Chunk, *nouns: Any) -> tuple[Predicate, ...]:
@@ -715,6 +724,24 @@ def _with_contents(thing: NounPhrase, predications: tuple[Predication, ...] | No
         return predications  # 'lay the table with forks on the left'
     holds = replace(first[0], arguments=(replace(held, predicates=()),))
     return (Predication((holds, *held.predicates)),)
+
+
+def _against_supports(lemma: str, predications: tuple[Predication, ...]) -> tuple[Predication, ...]:
+    """Return *lean the picture in its frame against the wall* with the picture against the wall, and not its frame."""
+    last = predications[-1].predicates[-1:] if predications and lemma in ("lean", "prop", "rest") else ()
+    holder = last[0].arguments[-1] if last and last[0].arguments else None
+    against = tuple(p for p in holder.predicates if p.relation == "against") if holder is not None else ()
+    if holder is None or not against:
+        return predications
+    kept = replace(holder, predicates=tuple(p for p in holder.predicates if p not in against))
+    inner = replace(last[0], arguments=(*last[0].arguments[:-1], kept))
+    part = replace(predications[-1], predicates=(*predications[-1].predicates[:-1], inner, *against))
+    return (*predications[:-1], part)
+
+
+def _is_bare(phrase: NounPhrase) -> bool:
+    """Return True for a noun without an article, an owner and a number, such as what a vessel contains."""
+    return phrase.determiner is None and phrase.owner is None and phrase.count is None and phrase.pronoun is None
 
 
 def _is_absolute(predicate: Predicate) -> bool:
@@ -875,6 +902,8 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     phrase = noun.phrase
     last = phrase.predicates[-1] if phrase.predicates else None
     part = last.subject_part if last is not None else None
+    if part is None and last is not None and last.reversed and last.of_one:
+        part = last.arguments[0]  # 'on the mat with its cable beside it'
     if last is None or part is None:
         return noun, ()
     own = part.owner is not None and part.owner.pronoun in ("it", "they")

@@ -10,7 +10,7 @@ from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import type_at
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.function_words import PERSONS
-from deixis.grammar.english.vocabulary.nouns import last_word
+from deixis.grammar.english.vocabulary.nouns import SURFACES, last_word
 
 _WITH_LISTS = frozenset({"between", "among", "next_to", "near", "with", "from", "opposite"})
 """Relations whose object is often a list."""
@@ -174,12 +174,14 @@ def _fronted_command(types: list[str], at: int) -> bool:
 
 
 def _verbless_inversion(types: list[str], at: int) -> bool:
-    """Return True for a place and its thing without a verb, to the end of the clause: *behind it the cup*."""
+    """Return True for a place and its thing without a verb: *behind it the cup*, *behind it, half hidden, a cup*."""
     objects = 0
     while types[at : at + 2] == ["PREP", "NP"] and objects == 0:
         at, objects = at + 2, 1
         while types[at : at + 2] == ["OF", "NP"]:
             at += 2
+    if types[at : at + 3] in (["COMMA", "PART", "COMMA"], ["COMMA", "ADJP", "COMMA"]):
+        at += 3
     if not objects or types[at : at + 1] != ["NP"]:
         return False
     at += 1
@@ -229,6 +231,8 @@ def _subject_follows(
     accompanied = any(  # 'the telephone is on the desk, with a pad next to it and …'
         types[k - 1 : k + 3] == ["COMMA", "WITH", "NP", "PREP"] for k in range(start + 1, at)
     )
+    if {"COMMA", "AND"} == kinds and following == "PREP" and _objects_alone(chunks, types, start, at):
+        return False  # 'put a mug, and a glass on the shelf'
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
     told_apart = any(kind == "NP" and chunks[k].value.pronoun == "one" for k, kind in enumerate(types[start:at], start))
@@ -244,6 +248,8 @@ def _subject_follows(
         opposite = _is_opposite(chunks, start, at, end + 3)
         if opposite or kinds == {"COMMA"}:
             return opposite
+    if complete and kinds == {"COMMA"} and following == "PREP" and _within_list(chunks, types, start, at):
+        return False  # 'the shelf holds a mug, a bar on a dish and a comb'
     shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
     if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
         phrase = chunks[end].value
@@ -279,6 +285,69 @@ def _lists_objects(types: list[str], start: int, at: int) -> bool:
     verb = next((i for i in range(start, at) if types[i] in ("PUT", "TVERB")), at)
     objects = types[verb + 1 : at]
     return objects.count("COMMA") > 0 and objects[:1] == ["NP"] and set(objects) <= {"NP", "OF", "COMMA", "AND", "OR"}
+
+
+def _within_list(chunks: list[Chunk], types: list[str], start: int, at: int) -> bool:
+    """Return True if a joint is in a list of things, some with their places, that follows a verb."""
+    firsts = (i for i in range(start + 1, at) if types[i] == "NP" and types[i - 1] in ("BE", "TVERB"))
+    return any(end_of_list(chunks, first) > at for first in firsts)
+
+
+def end_of_list(chunks: list[Chunk], at: int) -> int:
+    """Return the end of a list of things of which some have places: *a mug, a bar on a dish, a comb and a jar*.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of the sentence.
+    at
+        Index of the first thing.
+
+    Returns
+    -------
+    int
+        Index after the last thing; ``at`` where there is no such list, or where each thing has its own place.
+    """
+    types = [chunk.type for chunk in chunks]
+    i, bare, placed, holding, commas, conjoined = at, 0, 0, 0, 0, False
+    if at and types[at - 1] in ("PREP", "OF", "WITH"):
+        return at  # 'between the box and the jug with a coat on it'
+    while types[i : i + 1] == ["NP"] and not (chunks[i].value.pronoun or is_place(chunks[i].value)):
+        i = _after_of(types, i + 1)
+        is_placed = types[i : i + 2] == ["PREP", "NP"] and chunks[i].value.preposition.relation not in _WITH_LISTS
+        if types[i : i + 2] == ["WITH", "NP"]:
+            i, holding = i + 2, holding + 1
+            if types[i : i + 2] == ["PREP", "NP"] and chunks[i + 1].value.pronoun == "it":
+                i += 2  # 'a plate with a napkin on it'
+        elif is_placed and not is_place(chunks[i + 1].value):
+            i, placed = _after_of(types, i + 2), placed + 1
+        else:
+            bare += 1
+        if conjoined:
+            several = bare > 1 or commas > 1 or holding > 0  # not 'a cup on the tray and a jug'
+            return i if placed + holding and bare and several and types[i : i + 1] in ([], ["CUT"]) else at
+        joints = types[i : i + 2]
+        if joints[:1] not in (["COMMA"], ["AND"]):
+            return at
+        conjoined, commas = "AND" in joints, commas + (joints[0] == "COMMA")
+        i += 1 + (joints == ["COMMA", "AND"])
+    return at
+
+
+def _after_of(types: list[str], at: int) -> int:
+    """Return the index after *of* phrases that begin at an index."""
+    while types[at : at + 2] == ["OF", "NP"]:
+        at += 2
+    return at
+
+
+def _objects_alone(chunks: list[Chunk], types: list[str], start: int, at: int) -> bool:
+    """Return True for a command that has its objects and no place yet: *store four mugs*, not *set the table*."""
+    objects = chunks[start + 1 : at]
+    placed = any(last_word(c.value.head) in SURFACES for c in objects if c.type == "NP")
+    return types[start] == "PUT" and types[start + 1 : at].count("NP") > 0 and set(types[start + 1 : at]) <= {
+        "NP", "OF", "COMMA"
+    } and not placed  # fmt: skip
 
 
 def _is_opposite(chunks: list[Chunk], start: int, at: int, place: int) -> bool:
@@ -599,6 +668,9 @@ def classify(segment: Segment) -> list[Chunk]:
                 kind = "OJ"  # 'a candle between them, and a bottle …'
             if kind == "NJ" and _lists_places(source, found, kinds, end, segment.link):
                 kind = "OJ"
+            in_list = any(types[k] == "NP" and end_of_list(source, k) > i for k in range(i))
+            if kind == "NJ" and in_list and found[0].type != "PUT":
+                kind = "LJ"
             if (
                 kind == "NJ"
                 and segment.link == ":"

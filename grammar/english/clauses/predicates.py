@@ -15,7 +15,16 @@ from deixis.grammar.english.tree import (
     Span,
     aimed,
 )
-from deixis.grammar.english.vocabulary.nouns import AIMED_PARTS, GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import (
+    AIMED_PARTS,
+    GAPS,
+    HOLDERS,
+    PARTS,
+    SUPPORTS,
+    SURFACES,
+    VESSELS,
+    last_word,
+)
 from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
@@ -72,6 +81,8 @@ _LYING = frozenset({"lay", "lie", "fall", "rest"})
 """Verbs after which *on its left side* says how a thing lies."""
 _LAID = _LYING | {"turn", "flip", "tip", "put", "place", "set"}
 """Verbs after which *on its back* says how a thing lies."""
+_OWN_EDGES = {"edge": (None, "front", "back", "long", "short"), "end": (None,)}
+"""Words for the edges and ends on which a thing can lie itself: *it lies on its front edge*."""
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 _LEAPING = word_set("jump leap climb walk step pass skip hop")
 """Verbs of a motion past a thing."""
@@ -176,7 +187,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 found.append(replace(following, relation="middle"))  # 'centred on the table'
             if following is not None and not following.relation.startswith("~"):
                 flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
-                if lemma in _STATES and following.relation != "pointing":
+                placed = following.relation == "pointing" or lemma == "hide"  # 'hide the key under the mat'
+                if lemma in _STATES and not placed:
                     found.append(_state(lemma, predicate))
             elif following is None and lemma in _ARRANGING:
                 found.append(Predicate(_ARRANGING[lemma], (), predicate.span, positive=predicate.positive))
@@ -344,7 +356,7 @@ def destination(predicate: Predicate) -> Predicate:
     if predicate.relation != "to" or not predicate.arguments:
         return predicate
     noun = last_word(predicate.arguments[0].head)
-    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
+    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES | SUPPORTS else "at"
     return replace(predicate, relation=relation)
 
 
@@ -632,6 +644,14 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif lemma in _LAID and relation == "part" and following.part in ("far", "back") and _is_it(arguments):
         lying = Adjective("on its back", "state", Degree.PLAIN, following.span)  # 'turn the chair on its back'
         return Predicate("state", (), span, value=lying, positive=marker.positive)
+    elif (
+        lemma in _LAID - {"rest"}
+        and relation in ("edge", "end")
+        and following.part in _OWN_EDGES[relation]
+        and _is_it(arguments)
+    ):
+        standing = Adjective(f"on its {relation}", "state", Degree.PLAIN, following.span)  # 'lay it on its front edge'
+        return Predicate("state", (), span, value=standing, positive=marker.positive)
     elif lemma == "hang" and relation == "part" and arguments:
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
     elif relation in ("behind", "in_front") and lemma in _ATTACHING and not arguments:

@@ -126,6 +126,7 @@ UNREAL = re.compile(
     r"|,\s*an?\s+(?:error|mistake|slip|misprint)\b"
     r"|\bwhich\s+(?:i|we)\s+(?:doubt|deny|(?:do\s+not|don['\u2019]t)\s+(?:believe|think))\b"
     r"|\b(?:sign|label|note|card|notice|poster|plaque|caption|sticker)\s+(?:reads?|says?)\s*:"
+    r"|\b(?:wrongly|mistakenly|incorrectly|erroneously)\b|\b(?:urge|temptation|impulse)\s+to\b"
     r"|\bnothing\s+like\s+(?:as|so)\b|\ball\s+that(?:['\u2019]s|\s+is)\s+(?:missing|lacking|needed)\b"
     r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
     r"|\b(?:theory|theories|story|map|guidebook|article|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
@@ -173,7 +174,7 @@ FRAMED = re.compile(
 """Beginning of a sentence about another world than the one on the table: *in theory*, *the moment it is …*."""
 SELDOM = re.compile(
     r"(?:\bnot|n['\u2019]t)\s+(?:always|usually|normally|generally|often|necessarily|every\s+day|all\s+the\s+time)\b|"
-    r"(?:^|,)\s*(?:very\s+)?few\s|\b(?:scarcely|hardly)\s+(?:lies?|stands?|sits?|hangs?|belongs?)\b|\bexcepted\b",
+    r"(?<!\ba\s)(?<!\bthe\s)(?<!\bthese\s)(?<!\blast\s)(?<!\bfirst\s)(?<!\bnext\s)(?<!\bevery\s)\bfew\s|\b(?:scarcely|hardly)\s+(?:lies?|stands?|sits?|hangs?|belongs?)\b|\bexcepted\b",
     re.IGNORECASE,
 )
 """Words by which something is so at times, or of some things."""

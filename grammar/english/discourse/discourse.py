@@ -119,6 +119,10 @@ def _is_moved(clause: Clause, subject: NounPhrase) -> bool:
     return commanded and not any(p.relation in ("pointing", "facing") for p in clause.predicates)
 
 
+_UNREAL = (UNREAL.search, SAID_AFTER.search, FRAMED.search, UNSURE.search, FUTURE.match)
+"""Searches for words by which nothing in a sentence is asserted."""
+
+
 class Discourse(Statements):
     """Reader of parsed sentences, in order; it collects drafts of facts."""
 
@@ -135,6 +139,10 @@ class Discourse(Statements):
             self.references.start, self.end = sentence.span
             self.references.lost = [problem.span for problem in sentence.misunderstood]
             self.condition = condition_of(sentence)
+            doubt = DOUBT.match(self.text, *sentence.span)
+            whole = self.text[sentence.span[0] if doubt is None else doubt.end() : self.end]
+            self.unreal = next((found for search in _UNREAL if (found := search(whole)) is not None), None)
+            self.reports = REPORTED.search(self.text, *sentence.span) is not None
             self.elsewhere = self._other_viewpoint(sentence)
             self.titled = sentence.place if sentence.heading else self.titled
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
@@ -388,11 +396,9 @@ class Discourse(Statements):
         if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
             subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
             clause = replace(clause, predicates=(*clause.predicates, *order))
-        doubt = DOUBT.match(self.text, self.references.start, self.end)
-        whole = self.text[self.references.start if doubt is None else doubt.end() : self.end]
-        unreal = REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)
-        unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1]) or SAID_AFTER.search(whole)
-        unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
+        unreal = self.unreal or REVOKED.search(self.text[clause.span[1] : self.end])
+        if self.reports:
+            unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1])
         if clause.mood is Mood.COMMAND:
             unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
         bounds = AT_MOST.finditer(self.text, self.references.start, clause.span[1])
@@ -563,7 +569,7 @@ class Discourse(Statements):
         word = self.text[slice(*predicate.span)].casefold()
         if word not in ("left", "right") or predicate.arguments:
             return False
-        if BARE_AFTER_BE.search(self.text[: predicate.span[0]]):
+        if BARE_AFTER_BE.search(self.text[self.references.start : predicate.span[0]]):
             return True
         if word != "left":
             return False
@@ -600,7 +606,8 @@ class Discourse(Statements):
         known = self.references.earlier(replace(subject, determiner="the")) if subject.head else None
         inside = all(p.relation in ("on", "inside") for p in predicates)
         if known is None and subject.head and inside and last_word(subject.head) not in GENERAL:
-            self._absent(subject)
+            if not self.text[: subject.span[0]].rstrip().casefold().endswith((" so", " so that")):
+                self._absent(subject)  # unlike 'in a box, so that no juice drips on it'
             return
         if known is not None and last_word(subject.head) not in GENERAL:
             self.how = replace(self.how, positive=False)  # 'no glass stands to the left of it' after 'the glasses'

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
-from deixis.grammar.english.confidence import Guess, is_doubtful
+from deixis.grammar.english.confidence import Guess, Standing, standing
 from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.references import References
 from deixis.grammar.english.discourse.surfaces import surface_noun
@@ -109,6 +109,8 @@ class Drafting:
         self.edge: str | None = None
         self.end = 0  # of the sentence in the text
         self.condition: str | None = None
+        self.unreal: re.Match[str] | None = None  # words by which the sentence asserts nothing
+        self.reports = False  # True for a sentence that tells what a person says
         self.elsewhere: str | None = None  # words of the sentence by which another place than the viewer's is meant
         self.titled: tuple[Predicate, ...] = ()  # place that the last heading names
         self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
@@ -161,7 +163,7 @@ class Drafting:
             how = replace(how, guesses=how.guesses | {Guess.STRANGE})
         if nameless or any(self._is_no_thing(leaf) for entity in arguments for leaf in entity.leaves()):
             how = replace(how, guesses=how.guesses | {Guess.NO_THING})
-        if is_doubtful(how.guesses):
+        if standing(how.guesses) is not Standing.ASSERTED:
             how = replace(how, uncertain=True, optional=True, weight=min(how.weight, 0.5))
         draft = Draft(relation, subjects, arguments, how, value, metres)
         if draft not in self.drafted:

@@ -74,10 +74,12 @@ OPPOSITES = {
 }  # fmt: skip
 _ACTS = frozenset({"placement", "decision", "agreement", "discussion"})
 """Nouns of acts, which have no place whatever stands before them: *the accurate placement of the cups*."""
-_LASTING = frozenset({"colour", "material", "contents", "ordinal"})
+_LASTING = frozenset({"colour", "material", "contents", "ordinal", "rank"})
 """Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
 _OWN = frozenset({"size", "height", "length", "width", "thickness", "colour", "material", "shape"})
 """Dimensions of adjectives that are true of one thing of a kind."""
+_TELLING = frozenset({"with", "on", "inside", "under", "next_to", "left", "right", "behind", "in_front"})
+"""Relations in a relative clause that tell one of several things: *the table that holds the lamp*."""
 _CARRYING = frozenset({"on", "across", "inside"})
 """Relations to a thing that the subject of the clause before carries or holds."""
 _COMPASS = frozenset({"north", "south", "east", "west"})
@@ -300,7 +302,7 @@ class References:
         } | _marks(phrase)
         own_end = min((p.span[0] for p in phrase.predicates if p.span[0] > phrase.span[0]), default=phrase.span[1])
         written = self.text[phrase.span[0] : own_end].casefold()
-        words = re.sub(r"[,:;]", " ", written).split()
+        words = re.sub(r"[,:;\"\u201c\u201d\u2018]|['\u2019](?!\w)", " ", written).split()
         count = phrase.count
         stem = last_word(phrase.head)
         amount = written.partition(" of ")[0].split()[-1:] if " of " in written and phrase.of is None else []
@@ -434,6 +436,19 @@ class References:
             named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
             if alone and phrase.plural and phrase.count is None and not named:
                 continue  # 'the drums' after 'the bass drum'
+            every = phrase.determiner in ("each", "every") or any(a.rank is not None for a in phrase.adjectives)
+            if (
+                every
+                and alone
+                and entity.born < self.sentence
+                and not _agreement(entity, phrase)
+                and any(dimension in _LASTING for dimension, _ in entity.adjectives)
+            ):
+                continue  # 'one on each square' after 'the white square'
+            sized = any(a.dimension == "size" and a.degree is Degree.PLAIN for a in phrase.adjectives)
+            other = phrase.head in GENERAL and entity.noun != phrase.head and sized
+            if other and not _agreement(entity, replace(phrase, plural=False)):
+                continue  # 'the large pieces' after 'the foot pieces'
             kind = phrase.plural and phrase.determiner is None and phrase.owner is None and phrase.count is None
             if kind and not (entity.members or entity.plural or entity.group is not None):
                 continue  # 'towels' after 'a towel'
@@ -479,7 +494,7 @@ class References:
     def _is_ambiguous(self, phrase: NounPhrase, latest_first: list[Entity]) -> bool:
         """Return True for *the plate* after *the butter plate* and *the side plate*, of which neither was called so."""
         bare = phrase.determiner == "the" and not phrase.plural and not phrase.adjectives and phrase.owner is None
-        named = [e for e in latest_first if _can_name(phrase.head, e) and not e.compared]
+        named = [e for e in latest_first if _can_name(phrase.head, e) and not (e.compared or _conflicting(e, phrase))]
         named = [e for e in named if e.noun != phrase.head or e.members or e.single or not e.plural]  # not 'bags'
         longer = {e.noun for e in named if e.noun != phrase.head and not e.was_called(phrase.head)}
         return bare and not phrase.predicates and len(longer) > 1 and len(named) == len(longer)
@@ -576,6 +591,16 @@ class References:
             if owned is not None:
                 owned.adjectives.add(("picked", f"of {owner}"))
                 return self.picked(owned, phrase)
+        for place in phrase.predicates:  # 'the table that holds the lamp' after 'two tables'
+            if phrase.determiner != "the" or phrase.plural or not phrase.head or not place.positive:
+                continue
+            if place.relation in _TELLING and len(place.arguments) == 1 and place.arguments[0].head:
+                tag = f"{place.relation} {place.reversed} {place.arguments[0].head}"
+                same = next((leaf for leaf in leaves if ("picked", tag) in leaf.adjectives), None)
+                same = same or next((leaf for leaf in leaves if not leaf.is_picked), None)
+                if same is not None:
+                    same.adjectives.add(("picked", tag))
+                    return self.picked(same, phrase)
         apart = any(p.degree is Degree.SUPERLATIVE and p.arguments for p in phrase.predicates)
         free = [leaf for leaf in leaves if not leaf.is_picked]
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
@@ -692,6 +717,8 @@ class References:
             return left_out
         if word in ("they", "both", "all", "each", "these", "those"):
             several = self._plural(relation, besides, word == "both")
+            if several is not None and word in ("these", "those") and relation is not None and not several.noun:
+                self.guesses.append((phrase.span, Guess.THOSE))  # 'next to these lies the spoon'
             if several is not None and word == "they" and relation is None and not self._is_fresh(several.itself):
                 self.guesses.append((phrase.span, Guess.THEY))
             return several
@@ -1144,6 +1171,9 @@ def _marks(phrase: NounPhrase) -> set[tuple[str, str]]:
     of = phrase.of
     filled = of is not None and bool(of.head) and of.determiner is None and of.owner is None
     marks = {("contents", of.head)} if of is not None and filled and last_word(phrase.head) not in PARTS else set()
+    first, _, last = phrase.head.rpartition(" ")
+    if first in SUBSTANCES and last in VESSELS:
+        marks.add(("contents", first))  # 'the rice bowl', which is not 'the bowl of soup'
     for predicate in phrase.predicates:
         if predicate.relation == "ordinal" and predicate.value is not None and not predicate.reversed:
             marks.add(("ordinal", f"{predicate.value.rank} from {predicate.part}"))

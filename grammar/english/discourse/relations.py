@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PARTS,
     PEOPLE,
     SUBSTANCES,
+    SUPPORTS,
     SURFACES,
     VESSELS,
     VIEWER_WORDS,
@@ -42,36 +43,8 @@ EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"
 
 CONTAINING = frozenset({"contains", "contain", "containing"})
 
-HOLDING = frozenset({"holds", "hold", "holding"}) | EMPTY
-"""Words of clauses that say what a vessel holds: *it is empty except for a spoon*."""
-
-SUPPORTS = frozenset(
-    [
-        "saucer",
-        "plate",
-        "tray",
-        "mat",
-        "coaster",
-        "napkin",
-        "board",
-        "cloth",
-        "stand",
-        "shelf",
-        "table",
-        "doily",
-        "tile",
-        "tier",
-        "platform",
-        "plinth",
-        "pedestal",
-        "easel",
-        "trivet",
-        "peg",
-        "hook",
-        "nail",
-        "hanger",
-    ]
-)
+HOLDING = frozenset({"holds", "hold", "holding", "filled", "full", "stuffed", "packed", "crammed", "stocked"}) | EMPTY
+"""Words of clauses that say what a vessel holds: *it is filled with spoons*, *it is empty except for a spoon*."""
 
 
 _OUTER = frozenset({"top", "rim", "edge", "brim"})
@@ -125,6 +98,9 @@ def _are_contents(held: Entity, vessel: Entity) -> bool:
 _TOLD_APART = word_set("box case")
 """Vessels that *with* often tells apart by a part: *the one with the antennas*."""
 
+_CLOSED = word_set("cabinet dresser sideboard")
+"""Surfaces with doors or drawers, which hold things inside them."""
+
 _RACKS = word_set("rack holder basket crate caddy quiver")
 """Holders without doors and drawers, so that *with* says what is in them: *a rack with four test tubes*."""
 
@@ -166,7 +142,7 @@ class Relations(Mentions):
         if relation == "inside" and self.how.positive and any(self._is_town(a) for a in predicate.arguments):
             self._is_not_here(subject)  # 'the knife is in London'
             return
-        degree = self.text[: predicate.span[0]].casefold().split()[-1:]
+        degree = self.text[self.references.start : predicate.span[0]].casefold().split()[-1:]
         if relation in ("near", "far") and degree in (["equally"], ["as"]):
             return  # 'equally far from the cross' compares, and says no distance
         if relation == "outside":
@@ -207,6 +183,8 @@ class Relations(Mentions):
             self._add(f"none_{relation}", (subject,), ())  # 'the plate has nothing on it'
             return
         for phrase in predicate.arguments:
+            if predicate.reversed and phrase.head and phrase.owner is not None and phrase.owner.pronoun == "it":
+                phrase = replace(phrase, owner=None, determiner="the")  # 'on the mat, with its cable under it'
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
                 phrase = replace(phrase, head=others[-1].noun, pronoun=None, determiner="another")  # 'not in the one …'
             last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None
@@ -342,7 +320,7 @@ class Relations(Mentions):
         words = self.text[slice(*phrase.span)].split()
         named = bool(words) and not phrase.known and phrase.determiner is None and phrase.owner is None
         bare = named and not (phrase.adjectives or phrase.predicates or phrase.members or phrase.count)
-        after_in = self.text[: phrase.span[0]].casefold().split()[-1:] == ["in"]
+        after_in = self.text[self.references.start : phrase.span[0]].casefold().split()[-1:] == ["in"]
         return bare and after_in and all(word[0].isupper() and not word.isupper() for word in words)
 
     def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
@@ -387,13 +365,11 @@ class Relations(Mentions):
             return False
         self._add("contents", (vessel,), (), value=content.noun)
         if content.same_as is None and not content.members:
-            if (
-                len([d for d in self.drafts if content in (*d.subjects, *d.arguments)]) > 0
-                or content.born < self.how.sentence
-            ):
-                self._identify(vessel, content)
-            else:
+            placed = any(content in (*d.subjects, *d.arguments) for d in self.drafts)
+            if not (placed or content.born < self.how.sentence):
                 self._identify(content, vessel)
+            elif not content.indefinite:  # after 'pour water into the cup', 'fill the tank with water' is other water
+                self._identify(vessel, content)
         return True
 
     def _between(self, subject: Entity, entities: list[Entity]) -> None:
@@ -605,7 +581,12 @@ class Relations(Mentions):
             same = [d for d in self.drafts if d.how.sentence == self.how.sentence and d.subjects == (last,)]
             if same and same[-1].arguments and same[-1].how.guesses & UNANCHORED:
                 last = same[-1].arguments[0]  # 'the bread plate above to the left, the glass above to the right'
-            further = self.text[: predicate.span[0]].rstrip().casefold().endswith(("further", "farther"))
+            further = (
+                self.text[self.references.start : predicate.span[0]]
+                .rstrip()
+                .casefold()
+                .endswith(("further", "farther"))
+            )
             here = before.sentence == self.how.sentence or further  # 'further to the right lie the tongs'
             here = here or (opposite and before.sentence == self.how.sentence - 1)  # 'the fork to the left of it. …'
             self.how = self._guessed(Guess.OF_THE_LAST if here else Guess.OF_EARLIER)
@@ -651,7 +632,9 @@ class Relations(Mentions):
     def _hold(self, subject: Entity, held: Entity, words: list[str]) -> None:
         """State what a support or a vessel holds as on or inside it; what another thing is with is near it."""
         noun = last_word(subject.noun)
-        if subject.role is Role.SURFACE or (noun in SUPPORTS | SURFACES and CONTAINING.isdisjoint(words)):
+        if noun in _CLOSED and not HOLDING.isdisjoint(words) and subject.role is not Role.SURFACE:
+            self._pair(held, "inside", subject, False)  # 'the cabinet holds cups'
+        elif subject.role is Role.SURFACE or (noun in SUPPORTS | SURFACES and CONTAINING.isdisjoint(words)):
             self._pair(held, "on", subject, False)
         elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
             self._pair(held, "inside", subject, False)

@@ -9,7 +9,7 @@ from deixis.grammar.english.confidence import UNJOINED, Guess
 from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
 from deixis.grammar.english.discourse.mentions import SUPERLATIVES
 from deixis.grammar.english.discourse.references import POLES, Focus
-from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, SUPPORTS, Relations
+from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, Relations
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate, aimed
 from deixis.grammar.english.vocabulary.nouns import (
@@ -20,6 +20,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     PARTS,
     PLACES_OF,
     SUBSTANCES,
+    SUPPORTS,
     SURFACES,
     VESSELS,
     VIEWER,
@@ -88,6 +89,9 @@ def _is_placed(value: str) -> bool:
     return form is not None and form.lemma in NOT_STATES | PLACING_VERBS and form.lemma not in _SEEN_ON_THINGS
 
 
+_OF_PARTS = frozenset({"colour", "material", "shape", "size", "height", "length", "width", "thickness"})
+"""Qualities of a part that the whole need not have."""
+
 _SEEN_ON_THINGS = frozenset({"stack", "hang", "roll", "turn", "open"})
 """Such verbs whose participles tell a state that can be seen."""
 
@@ -116,8 +120,8 @@ class Statements(Relations):
                 self._add("pointing", (subject.whole,), (), value=relation)
                 return
             lies = relation in DIRECTIONS or relation in ("on", "under", "inside")
-            if relation in PLACES or (not predicate.arguments and lies):
-                return  # said about the part alone: 'the rounded edge is at the top'
+            if relation in PLACES or relation in _OF_PARTS or (not predicate.arguments and lies):
+                return  # said about the part alone: 'the rounded edge is at the top', 'the lid of the box is red'
             if any(a.pronoun in ("it", "they") and not a.head for a in predicate.arguments):
                 return  # 'the drill, its cord wrapped around it'
             apart = predicate.arguments and relation not in ("inside", "on", "touching", "pointing", "facing")
@@ -185,6 +189,8 @@ class Statements(Relations):
                 leaf.adjectives.add((relation, value))
         if value in ("nested", "nest", "stacked", "stack") and (subject.itself.members or subject.plural):
             relation, value = ("nested" if value.startswith("nest") else "stacked"), None
+        elif relation == "open" and self.text[predicate.span[1] : self.end].lstrip().casefold().startswith("to "):
+            return  # 'the hall is open to the kitchen'
         elif relation in ("upside_down", "empty", "open", "closed"):
             value = None
         elif (
@@ -221,7 +227,8 @@ class Statements(Relations):
         pass
 
     def _say_there(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
-        here = self.text[slice(*predicate.span)].casefold().endswith(("here", "there")) and not predicate.arguments
+        pointed = self.text[slice(*predicate.span)].casefold().split()[-1:] in (["here"], ["there"])
+        here = pointed and not predicate.arguments  # not 'anywhere'
         if here and subject.role is Role.THING and _KEPT.search(self.text[slice(*self.how.span)]):
             self._say_here(subject, others)
             return

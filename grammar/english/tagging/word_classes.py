@@ -236,7 +236,7 @@ _NEVER_NOUNS = word_set(
     " where there then so too wherever otherwise also is are was were be been being am do does did has have had"
     " having n't please let lets upside into onto upon toward towards against among amongst between beside"
     " beneath underneath behind until during such whether whenever via per through 's 're 'm 'll 've 'd it's"
-    " although though since unless yet in over down"
+    " although though since unless yet in over down containing comprising consisting"
 )
 
 _SUBORDINATE = word_set(

@@ -409,6 +409,15 @@ VESSELS = frozenset(
 )
 """Nouns of things that hold a substance."""
 
+SUPPORTS = frozenset(
+    [
+        "saucer", "plate", "platter", "tray", "mat", "coaster", "napkin", "board", "slate", "cloth", "stand", "shelf",
+        "table", "doily", "tile", "tier", "platform", "plinth", "pedestal", "easel", "trivet", "peg", "hook", "nail",
+        "hanger", "stack", "pile",
+    ]
+)  # fmt: skip
+"""Nouns of things that others stand on or hang from."""
+
 HOLDERS = frozenset(
     [
         "drawer", "pocket", "compartment", "holder", "rack", "basket", "bin", "slot", "pouch", "sleeve", "holster",

@@ -59,6 +59,7 @@ NEVER_PLACES = word_set(
 _PREPOSITIONS = """
 material: made of, made out of, made from, made up of, built of, built from, composed of, consisting of
 stacked: stacked upon
+on: halfway up, halfway down, halfway along
 on: all over, on, upon, onto, atop, on top of, ontop of, on to, over top of
 inside: in, inside, inside of, within, into, in side of
 at: at
@@ -96,7 +97,7 @@ opposite: facing opposite, on the opposite side of, at the opposite side of, opp
 against: against, up against, right up against, flush with, flush against
 along: along, all along, down the centre of, down the center of, down the middle of, along the middle of
 along: along the centre of, along the center of, down the length of, along the length of
-touching: in contact with, touching
+touching: in contact with, touching, back-to-back with, back to back with
 facing: facing, facing to, facing toward, facing towards, toward
 facing: towards, looking at, looking toward, looking towards, facing at
 pointing: pointing to, pointing at, pointing toward, pointing towards, pointing into
@@ -115,7 +116,9 @@ right: at right of, to the right from, right side from
 right: right of, right to, right from, rightward of, to right of, right side of, on right of, on right side of
 top: north of, to north of
 bottom: south of
+top_left: above left of
 top_left: upper left of, upper left to, north west of, northwest of, top left of, northwest to, northwest from
+top_right: above right of
 top_right: upper right of, upper right to, north east of, northeast of, top right of, northeast to, northeast from
 bottom_left: lower left of, lower left to, south west of, southwest of, bottom left of
 bottom_right: lower right of, lower right to, south east of, southeast of, bottom right of

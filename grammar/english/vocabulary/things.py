@@ -89,7 +89,7 @@ _NOUNS_LIKE_QUALITIES = word_set(
     " abrasive adhesive preservative sedative laxative digestive derivative directive perspective collective"
     " handful spoonful armful mouthful"
     " table timetable vegetable cable constable stable bible crucible dirigible collectible turntable worktable fable"
-    " variable wearable consumable disposable perishable edible convertible"
+    " variable wearable consumable disposable perishable edible convertible thurible"
     " negative positive digest"
 )
 """Nouns with such endings."""

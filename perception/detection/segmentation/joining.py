@@ -201,6 +201,8 @@ def _hollow(parts: Parts, part: int | None) -> Pairs:
 def bridged(parts: Parts) -> Pairs:
     """Return pairs of parts of one surface that a narrow object on both divides.
 
+    The foot of a glass is a part of that glass, and not of a surface that continues behind it.
+
     Parameters
     ----------
     parts
@@ -212,7 +214,10 @@ def bridged(parts: Parts) -> Pairs:
         Pairs of parts of one colour that do not meet, with a part that lies on both.
     """
     pairs, over = _below_one(parts)
-    pairs = pairs.where(_alike(parts, pairs) & (_gaps(parts, pairs) < parts.settings.max_hidden_gap))
+    feet = on_a_foot(parts).second
+    surfaces = ~np.isin(pairs.first, feet) & ~np.isin(pairs.second, feet)
+    near = _gaps(parts, pairs) < parts.settings.max_hidden_gap
+    pairs = pairs.where(surfaces & near & _alike(parts, pairs))
     return _chosen(pairs, lambda a, b: continues(parts, a, b, over[a, b]))
 
 

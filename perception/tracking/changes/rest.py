@@ -28,6 +28,9 @@ LIFTED_BY_HAND = 1.0
 EXPOSED = 0.3
 """Minimum share of the points of a thing that nothing hides, for its place to be called empty or not."""
 
+MIN_KNOWN = 0.25
+"""Minimum share of the pixels of a thing that the reference of a moving camera has, for them to tell that it left."""
+
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
 
@@ -52,9 +55,10 @@ def look_at_resting(things: Things, table: Table, seen: Observation, settings: T
         count = seen.changes.counts[thing.slot]
         measured = int(count.sum() - count[MISSING] - count[EDGE])
         visible = measured - int(count[NEARER])
-        if measured < MIN_OWN_PIXELS:
+        left = has_left(thing, seen.changes, settings.moved) or is_lifted(thing, table.reference, seen)
+        if measured < MIN_OWN_PIXELS or (left and seen.is_camera_moving and _is_forgotten(thing, measured, seen)):
             _look_once_more(thing, things, table, seen, settings)
-        elif has_left(thing, seen.changes, settings.moved) or is_lifted(thing, table.reference, seen):
+        elif left:
             start(thing, things, table.reference)
         elif count[SAME] >= settings.doubtful * measured:
             thing.seen_at_rest(seen.at, float(count[SAME]) / max(visible, 1))
@@ -157,6 +161,15 @@ def start(thing: Pipeline, things: Things, reference: Reference) -> None:
     thing.active = True
     reference.take(thing.slot, thing.beneath, {other.slot for other in others})
     thing.beneath = None
+
+
+def _is_forgotten(thing: Pipeline, measured: int, seen: Observation) -> bool:
+    """Return True if the reference has few of the pixels that a thing should have.
+
+    A camera that moves does not know what it sees beside a hand that hid the thing before.
+    """
+    pixels = np.unique(seen.view.pixels(thing.placed_points)[0])
+    return measured < MIN_KNOWN * len(pixels)
 
 
 def _look_once_more(

@@ -71,15 +71,15 @@ def complete(things: Things, table: Table, seen: Observation, settings: Tracking
         reference.owner.ravel()[parts] = thing.slot
         around = flat(thing)
     new, revealed = around.missing_part(), revealed_part(thing, resting, reference, view)
-    thing.views += 1
     thing.cut_off = around.is_cut_off
-    if around.is_seen_again or (seen.is_camera_moving and around.is_carried):
+    if around.is_seen_again or (seen.is_camera_moving and around.is_carried and thing.views > 0):
         # what one view shows may be something else
         both = np.union1d(new, revealed)
         is_new = changed.ravel()[both, None]
         seen_now = np.where(is_new, image.places(both, view.back), reference.points(both, view))
         seen_twice = both[thing.confirms(seen_now) & (~thing.contains(seen_now, BEYOND) | around.is_carried)]
         new, revealed = np.intersect1d(new, seen_twice), np.intersect1d(revealed, seen_twice)
+    thing.views += 1
     reference.owner.ravel()[new] = thing.slot
     reference.give(new[changed.ravel()[new]], thing.slot, image)
     new = np.union1d(np.union1d(new, parts), revealed)
@@ -88,8 +88,8 @@ def complete(things: Things, table: Table, seen: Observation, settings: Tracking
         colours = reference.colour.reshape(-1, 3)[each]
         thing.extend(reference.points(each, view), colours, settings.detection.outlines)
     ends = thing.unseen_ends(hidden_lengths(thing, resting, reference, view))
-    length, width, _ = thing.oriented.extents
-    thing.suppose(ends, *(likely_length(length, width, length + sum(ends)) if any(ends) else (length, 0.0)))
+    length, width, height = thing.oriented.extents
+    thing.suppose(ends, *(likely_length(length, width, height, length + sum(ends)) if any(ends) else (length, 0.0)))
     if merged:
         thing.take_name(merged, seen.at)
     things.leave(merged)

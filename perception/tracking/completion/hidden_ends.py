@@ -1,12 +1,14 @@
 """Estimate how long a long thing is of which something hides an end.
 
 The end lies behind what hides it: if the thing were longer, it would come into view on the other side. Between these
-bounds, the usual lengths of cutlery say which length is likely.
+bounds, the usual lengths of the kinds of cutlery that are as wide and as high as what is seen say which length is
+likely.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -34,15 +36,22 @@ points at which that is looked at."""
 MAX_BEYOND = 0.3
 """Largest distance in metres beyond an end at which a thing is looked for."""
 
-TOO_WIDE = 0.006
-"""Width in metres by which a thing may seem wider than its kind is, for noise."""
+SIZE_NOISE = 0.003
+"""Standard deviation in metres of the width and the height of what is seen."""
+
+HANDLE = 0.3, 0.5, 0.85
+"""Widths of a handle as shares of the least, the typical and the greatest width of the kind, which is that of the
+head. Heads and handles are equally likely to be seen."""
+
+LOW_PART = 0.3
+"""Least height of a part of a thing, as a share of the least height of the kind."""
 
 RIGHT = 0.014
 """Error in metres up to which a length is right. The middle is then right to 7 mm, which leaves 3 mm of a centimetre
 for the errors of the end that is seen."""
 
-LENGTHS = np.arange(0.0, 0.4, 0.001)
-"""Lengths in metres for which the prior probability is known."""
+LENGTHS, SIZES = np.arange(0.0, 0.4, 0.001), np.arange(0.0, 0.1, 0.0005)
+"""Lengths in metres, and widths and heights, for which the prior probabilities are known."""
 
 
 def hidden_lengths(
@@ -110,13 +119,13 @@ def _lines_beyond(thing: Pipeline, sign: int) -> list[tuple[NDArray[np.float64],
     return [(place, direction) for place in places]
 
 
-def likely_length(seen: float, width: float, most: float) -> tuple[float, float]:
+def likely_length(seen: float, width: float, height: float, most: float) -> tuple[float, float]:
     """Return the likeliest length of a piece of cutlery of which a part is seen, and its standard deviation.
 
     Parameters
     ----------
-    seen, width
-        Length and width in metres of what is seen.
+    seen, width, height
+        Length, width and height in metres of what is seen: with the head of the piece, or of its handle only.
     most
         Greatest possible length in metres.
 
@@ -128,13 +137,16 @@ def likely_length(seen: float, width: float, most: float) -> tuple[float, float]
 
     Examples
     --------
-    >>> length, spread = likely_length(0.1, 0.02, 0.4)
+    >>> length, spread = likely_length(0.1, 0.02, 0.008, 0.4)
     >>> 0.15 < length < 0.2, 0.02 < spread < 0.04
     (True, True)
-    >>> likely_length(0.39, 0.02, 0.4)
+    >>> likely_length(0.39, 0.02, 0.008, 0.4)
     (0.39, 0.0)
     """
-    weights = sum((prior for widest, prior in _priors() if width <= widest + TOO_WIDE), np.zeros(len(LENGTHS)))
+    weights = np.zeros(len(LENGTHS))
+    for kind in _kinds():
+        likelihood = _density(width, kind.head) + _density(width, kind.handle)
+        weights += likelihood * _density(height, kind.height) * kind.lengths
     possible = (seen <= LENGTHS) & (most >= LENGTHS)
     weights = np.where(possible, weights, 0.0)
     total = float(weights.sum())
@@ -145,9 +157,19 @@ def likely_length(seen: float, width: float, most: float) -> tuple[float, float]
     return length, float(np.sqrt((LENGTHS - length) ** 2 @ weights / total))
 
 
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """Prior probabilities of a kind of cutlery: of its ``LENGTHS``, and of ``SIZES`` across the parts that are seen."""
+
+    lengths: NDArray[np.float64]
+    head: NDArray[np.float64]
+    handle: NDArray[np.float64]
+    height: NDArray[np.float64]
+
+
 @cache
-def _priors() -> tuple[tuple[float, NDArray[np.float64]], ...]:
-    """Return the greatest width of each most special kind of cutlery, and its probability at ``LENGTHS``."""
+def _kinds() -> tuple[_Kind, ...]:
+    """Return the most special kinds of cutlery."""
     ontology = default_ontology()
     cutlery = ontology.kinds.of_word("cutlery")
     assert cutlery is not None, "the TBox has cutlery"
@@ -158,7 +180,21 @@ def _priors() -> tuple[tuple[float, NDArray[np.float64]], ...]:
         size = ontology.sizes.of(kind.iri)
         if kind.iri in broader or size.stated_of != kind.iri:
             continue
-        low, usual, high = size.length.least, size.length.typical, size.length.greatest
-        prior = np.interp(LENGTHS, [low, usual, high], [0.0, 1.0, 0.0], left=0.0, right=0.0)
-        found.append((size.width.greatest, prior / max(float(prior.sum()), 1e-9)))
+        length, width, height = (
+            (each.least, each.typical, each.greatest) for each in (size.length, size.width, size.height)
+        )
+        handle = tuple(share * value for share, value in zip(HANDLE, width, strict=True))
+        low = (LOW_PART * height[0], *height[1:])  # of a part
+        found.append(_Kind(_prior(LENGTHS, length), *(_prior(SIZES, each) for each in (width, handle, low))))
     return tuple(found)
+
+
+def _prior(values: NDArray[np.float64], bounds: tuple[float, ...]) -> NDArray[np.float64]:
+    """Return the triangular distribution at values between the least, the typical and the greatest one."""
+    prior = np.interp(values, bounds, [0.0, 1.0, 0.0], left=0.0, right=0.0)
+    return np.asarray(prior / max(float(prior.sum()), 1e-9))
+
+
+def _density(measured: float, prior: NDArray[np.float64]) -> float:
+    """Return the likelihood of a measured size under a prior of ``SIZES``."""
+    return float(prior @ np.exp(-0.5 * ((SIZES - measured) / SIZE_NOISE) ** 2))

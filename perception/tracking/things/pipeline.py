@@ -66,11 +66,17 @@ a colour, beyond which it may be a part of another colour.
 SUSPECTED_VIEWS = 3
 """Number of views of which the parts that the thing may have are kept until another view confirms them."""
 
+ENDS_VIEWS = 2
+"""Minimum number of views in a row that show an end that earlier views hid."""
+
 NEAR = 0.04
 """Distance in metres within which the middles of a thing and of a part of it are at one place."""
 
 MIN_ON = 0.7
 """Minimum share of the points of a thing inside the box of another one, from above, at which it lies on that one."""
+
+MIN_PLACES = 3
+"""Minimum number of places that must agree for a thing to be at rest, also where frames are far apart in time."""
 
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops by half."""
@@ -155,7 +161,9 @@ class Pipeline:
         self._suspected: deque[NDArray[np.float64]] = deque(maxlen=SUSPECTED_VIEWS)
         self._middles = [(self.at, self.pose[:3, 3])]  # of the box, which parts that are added move
         self._carrier: tuple[Pipeline, NDArray[np.float64]] | None = None  # what it lay on, and its pose on it
-        self._ends_seen = (False, False)  # against and along the long axis of the box
+        # against and along the long axis of the box: True for ends that were seen, the lengths that were hidden beyond
+        # them last, and the numbers of the last views in a row that showed them
+        self._ends_seen, self._hidden, self._views_of_end = [False, False], [0.0, 0.0], [0, 0]
         self._unseen, self._spread = (
             (0.0, 0.0),
             0.0,
@@ -709,7 +717,7 @@ class Pipeline:
             return
         ends = self._supposed_ends()
         self._take(extended(self.model, points, colours, settings))
-        self._ends_seen = False, False
+        self._ends_seen, self._hidden, self._views_of_end = [False, False], [0.0, 0.0], [0, 0]
         if any(self._unseen):  # they end where they were supposed to end
             along, (first, last) = self._along_in_table(), self._supposed_ends(seen=True)
             before, after = np.sort(ends @ along)
@@ -732,6 +740,8 @@ class Pipeline:
     def unseen_ends(self, hidden: tuple[float, float]) -> tuple[float, float]:
         """Return how far the thing may go on unseen, where no view has shown its end since its box was extended.
 
+        An end that earlier views hid must be shown by several views in a row, since the edge of what hides it is noisy.
+
         Parameters
         ----------
         hidden
@@ -742,9 +752,13 @@ class Pipeline:
         tuple
             Lengths in metres.
         """
-        first, last = (seen or not length for seen, length in zip(self._ends_seen, hidden, strict=True))
-        self._ends_seen = first, last
-        return 0.0 if first else hidden[0], 0.0 if last else hidden[1]
+        for end, length in enumerate(hidden):
+            self._views_of_end[end] = 0 if length else self._views_of_end[end] + 1
+            if length or self._views_of_end[end] >= (ENDS_VIEWS if self._hidden[end] else 1):
+                self._hidden[end] = length
+                self._ends_seen[end] |= not length
+        first, last = (0.0 if seen else length for seen, length in zip(self._ends_seen, self._hidden, strict=True))
+        return first, last
 
     def suppose(self, ends: tuple[float, float], length: float, spread: float) -> None:
         """Suppose that the thing goes on where something hides its ends, until more of it is seen.
@@ -789,7 +803,7 @@ class Pipeline:
         self.agreement = agreement
         self._carried = []
         self._places.append((at, pose[:3, 3].copy()))
-        while self._places[0][0] < at - self.settings.still_for - 1e-6:
+        while len(self._places) > MIN_PLACES and self._places[0][0] < at - self.settings.still_for - 1e-6:
             self._places.popleft()
 
     def lost(self, state: State = "hidden") -> None:
@@ -831,7 +845,7 @@ class Pipeline:
         bool
             False as long as it has not been followed long enough.
         """
-        if len(self._places) < 3 or at - self._places[0][0] < 0.7 * self.settings.still_for:
+        if len(self._places) < MIN_PLACES or at - self._places[0][0] < 0.7 * self.settings.still_for:
             return False
         places = np.array([place for _, place in self._places])
         return bool(np.ptp(places, axis=0).max() < 2 * self.settings.still)

@@ -102,12 +102,26 @@ COMPLETED_SHELLS = ("bash", "zsh", "fish")
 """Shells with completion."""
 
 
+COMPLETION_HELP = {
+    "install_completion": "Install completion for this shell, or for the one that is named: bash, zsh or fish.",
+    "show_completion": "Print the completion script for this shell, or for the one that is named.",
+}
+"""Help texts of the options that Typer adds."""
+
+
 class CommandsOnDemand(TyperGroup):
     """The commands of COMMANDS, each imported only when it is called, so that small commands start fast."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
         self.commands = dict.fromkeys(COMMANDS, self)  # the names, so that a misspelt one gets a suggestion
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the options and arguments; those that Typer adds have help texts of their own."""
+        parameters: list[Any] = super().get_params(ctx)
+        for parameter in parameters:
+            parameter.help = COMPLETION_HELP.get(parameter.name, parameter.help)
+        return parameters
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the command line; ``--show-completion`` and ``--install-completion`` may have the name of a shell."""

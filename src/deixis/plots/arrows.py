@@ -24,7 +24,7 @@ BEND = 0.12
 """Distance of an arrow's control point from its straight line, as a share of its length."""
 
 STEPS = 40
-"""Number of points along an arrow that names avoid."""
+"""Number of points of the path of an arrow that names avoid."""
 
 Point = tuple[float, float]
 Arrow = tuple[Point, Point]
@@ -137,30 +137,26 @@ def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, 
     axes.plot(x, y, "o", color=colour, markersize=3.5, alpha=alpha, zorder=order, scalex=False, scaley=False)
 
 
-def points_along(arrows: Sequence[Arrow], bend: float = BEND) -> list[Point]:
-    """Return points along arrows as :func:`draw_arrows` bends them, for axes of equal scale.
+def arrow_path(arrow: Arrow, bend: float = BEND) -> NDArray[np.float64]:
+    """Return points along an arrow as :func:`draw_arrows` bends it, for axes of equal scale.
 
     Parameters
     ----------
-    arrows
-        The arrows, in the unit of the axes.
+    arrow
+        The arrow, in the unit of the axes.
     bend
         Distance of an arrow's control point from its straight line, as a share of its length.
 
     Returns
     -------
-    list of Point
-        Points that names should not cover.
+    ndarray
+        Points from its start to its end, shape (:data:`STEPS`, 2).
     """
     share = np.linspace(0.0, 1.0, STEPS)[:, None]
-    points: list[Point] = []
-    for begin, finish in arrows:
-        start, end = np.array(begin), np.array(finish)
-        aside = (end - start)[::-1] * [1.0, -1.0]
-        middle = (start + end) / 2 + bend * aside
-        curve = (1 - share) ** 2 * start + 2 * share * (1 - share) * middle + share**2 * end
-        points += [(float(x), float(y)) for x, y in curve]
-    return points
+    start, end = np.array(arrow)
+    middle = (start + end) / 2 + bend * (end - start)[::-1] * [1.0, -1.0]
+    path: NDArray[np.float64] = (1 - share) ** 2 * start + 2 * share * (1 - share) * middle + share**2 * end
+    return path
 
 
 def _plan(thing: PerceivedObject) -> NDArray[np.float64]:

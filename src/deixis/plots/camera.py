@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.figure import INK
+from deixis.plots.figure import INK, PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,6 +22,9 @@ BACKGROUND_STRENGTH = 0.35
 """Share of the image's own shade in points that belong to no thing; the rest is white."""
 
 UNMEASURED = 0.98
+
+PALER = 0.55
+"""Strength of the colours after the first seven, relative to these; the rest is white."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +116,7 @@ def draw_camera(axes: Axes, camera: CameraPicture) -> None:
 
 
 def colours_of(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
-    """Return a colour for each number; successive numbers have very different hues.
+    """Return a colour for each number: those of the palette, then each of them paler.
 
     Parameters
     ----------
@@ -125,9 +128,9 @@ def colours_of(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
     ndarray
         Red, green and blue in [0, 1], shape (n, 3).
     """
-    from matplotlib.colors import hsv_to_rgb
+    from matplotlib.colors import to_rgb
 
-    hue = (np.asarray(numbers) * 0.61803398875) % 1.0
-    value = 0.6 + 0.3 * ((np.asarray(numbers) * 0.7548776662) % 1.0)
-    colours: NDArray[np.float64] = hsv_to_rgb(np.stack([hue, np.full(len(hue), 0.6), value], axis=1))
-    return colours
+    palette = np.array([to_rgb(colour) for colour in PALETTE])
+    colours = np.vstack([palette, 1.0 - PALER * (1.0 - palette)])
+    chosen: NDArray[np.float64] = colours[np.asarray(numbers) % len(colours)]
+    return chosen

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def plot_check(checked: Check, path: str | Path) -> None:
-    """Draw the table from above: misplaced, turned and extra things in red, undetermined ones dotted, and the verdict.
+    """Draw the table and the verdict: misplaced, turned and extra things in orange, undetermined ones dotted.
 
     Things of a wrong colour are hatched.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,13 +13,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-INK, QUIET, WRONG, PAPER = "#22313f", "#9aa5ae", "#d55e00", "#fbfaf7"
-FADED_INK = "#77808a"
-BELONGS = "#0072b2"
-"""Colour of the places where things belong.
+PALETTE = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442")
+"""Okabe and Ito's palette: blue, orange, green, purple, sky blue, vermilion, yellow.
 
-Like WRONG and the colours of groups it is of Okabe and Ito's palette, which people with the common forms of colour
-blindness can tell apart (https://jfly.uni-koeln.de/color/)."""
+People with the common forms of colour blindness can tell these colours apart (https://jfly.uni-koeln.de/color/)."""
+
+INK, QUIET, PAPER = "#22313f", "#9aa5ae", "#fbfaf7"
+FADED_INK = "#77808a"
+WRONG, BELONGS = PALETTE[5], PALETTE[0]
+"""Colours of what is wrong, and of the places where things belong."""
+
+LINE_COLOURS = (*PALETTE[:6], INK)
+"""Colours of the lines of a chart; yellow is too pale for a line."""
 
 MARGIN = 0.12
 """Margin of the picture, in inches."""
@@ -115,52 +119,6 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     return figure, figure.subplots(**subplots)
 
 
-class Names:
-    """Names in a picture, each put where it covers no other one, if there is such a place.
-
-    Parameters
-    ----------
-    axes
-        The axes to write into.
-    letter
-        Width and height of a letter in the axes' units.
-    size
-        Size of the letters in points.
-    """
-
-    def __init__(self, axes: Axes, letter: tuple[float, float], size: float) -> None:
-        self._axes, self._letter, self._size = axes, letter, size
-        self._placed: list[tuple[float, float, float]] = []
-
-    def write(self, name: str, x: float, heights: Sequence[float], colour: str = INK) -> None:
-        """Write a name.
-
-        Parameters
-        ----------
-        name
-            The name.
-        x
-            Its middle.
-        heights
-            Heights of its middle that are tried in turn; the first one is taken if all are crowded.
-        colour
-            Its colour.
-        """
-        from matplotlib.patheffects import withStroke
-
-        width, high = len(name) * self._letter[0], self._letter[1]
-
-        def crowded(y: float) -> bool:
-            return any(
-                abs(x - other) < (width + wide) / 2 and abs(y - height) < high for other, height, wide in self._placed
-            )
-
-        y = next((y for y in heights if not crowded(y)), heights[0])
-        self._placed.append((x, y, width))
-        stroke = withStroke(linewidth=2.2, foreground="#ffffff")
-        self._axes.text(x, y, name, color=colour, fontsize=self._size, ha="center", va="center", path_effects=[stroke])
-
-
 def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes]:
     """Return axes to draw into, with their figure.
 
@@ -179,6 +137,28 @@ def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes
     if axes is None:
         return new_figure(width, height)
     return axes.figure.figure, axes
+
+
+def line_look(number: int) -> dict[str, Any]:
+    """Return the colour and the dashes of a line of a chart, which differ for the first 14 lines.
+
+    Parameters
+    ----------
+    number
+        Number of the line, from 0.
+
+    Returns
+    -------
+    dict
+        Arguments of ``Axes.plot``.
+
+    Examples
+    --------
+    >>> line_look(0), line_look(7)
+    ({'color': '#0072b2', 'linestyle': '-'}, {'color': '#0072b2', 'linestyle': '--'})
+    """
+    row, column = divmod(number, len(LINE_COLOURS))
+    return {"color": LINE_COLOURS[column], "linestyle": ("-", "--")[row % 2]}
 
 
 def dress_chart(axes: Axes, title: str, across: str) -> None:

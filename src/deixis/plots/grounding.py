@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.arrows import Arrow, Ends, directions, draw_arrows, draw_directions, drawing_order, points_along
-from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress_table, save
+from deixis.plots.arrows import Arrow, Ends, arrow_path, directions, draw_arrows, draw_directions, drawing_order
+from deixis.plots.figure import BELONGS, INK, PALETTE, PAPER, QUIET, WRONG, canvas, dress_table, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding
 from deixis.reasoning.grounding.options import DECIDED
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from deixis.robot.robot import Told
     from deixis.workflows.knowledge.learn import Learned
 
-GROUP_COLOURS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#f0e442")
-"""Colours of groups of interchangeable objects, from Okabe and Ito's palette."""
+GROUP_COLOURS = tuple(PALETTE[number] for number in (4, 1, 2, 3, 0, 6))
+"""Colours of groups of interchangeable objects."""
 
 PLAIN_FILL, UNNAMED_FILL = "#ffffff", "#eceae4"
 
@@ -52,8 +52,8 @@ LINE, HALF_LINE, TITLE_LINE = 115, 50, 75
 LEAST_ALPHA = 0.2
 """Opacity of the edge of a thing whose name is almost certainly wrong."""
 
-MAX_CLEAR_ARROWS = 30
-"""Maximum number of arrows of violated facts that names avoid."""
+MAX_WORDS = 30
+"""Maximum number of arrows of violated facts that have a word."""
 
 LEAST_SHOWN = 0.005
 """Minimum probability at which an alternative is named in a picture: 0.01 with two digits."""
@@ -84,7 +84,7 @@ NO_MARKS = Marks()
 def plot_grounding(found: Grounding, path: str | Path, title: str | None = None) -> None:
     """Draw the scene from above with the names found, as PNG, SVG or PDF by the file's ending.
 
-    Satisfied facts are grey arrows, violated ones red; interchangeable objects share a colour; things without a name
+    Satisfied facts are grey arrows, violated ones orange; interchangeable objects share a colour; things without a name
     are grey.
 
     Parameters
@@ -276,7 +276,7 @@ def look_figure(look: Look, axes: Axes | None = None) -> Figure:
     if keys and own_figure:
         figure.legend(loc="outside lower center", handles=keys, fontsize=8, frameon=False, ncols=2)
     title = "no known layout" if look.layout is None else "; ".join((f"'{look.layout}'", *map(str, faults)))
-    _finish(figure, axes, look.scene, labels, points_along(ways, WAY_BEND), title, ghosts)
+    _finish(figure, axes, look.scene, labels, [arrow_path(way, WAY_BEND) for way in ways], title, ghosts)
     return figure
 
 
@@ -325,11 +325,10 @@ def grounding_figure(
             figure.legend(loc="outside lower center", **legend)
         else:
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), **legend)
-    ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
-    clear = [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS]), *points_along(ways, WAY_BEND)]
+    paths = [*map(arrow_path, satisfied + violated), *(arrow_path(way, WAY_BEND) for way in ways)]
     labels = {match.perceived: _doubtful_label(match, names, colours) for match in found.matches.values()}
     shown = _with_ids(scene, {id for match in found.matches.values() for id in _alternatives(match) if id not in names})
-    _finish(figure, axes, shown, labels, clear, title, ghosts, _words(found.violated, ends))
+    _finish(figure, axes, shown, labels, paths, title, ghosts, _words(found.violated, ends))
     return figure
 
 
@@ -372,10 +371,10 @@ def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str
     return f"{label}\nor {', or '.join(where)}{', …' if len(match.alternatives) > len(others) else ''}"
 
 
-def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, Arrow]]:
-    """Return the words of violated facts with their arrows, as far as there is room to write them."""
-    drawn = [entry for entry in entries if entry.perceived is not None][:MAX_CLEAR_ARROWS]
-    return [(entry.fact.relations[0].phrase, ends.arrow(*entry.perceived)) for entry in drawn if entry.perceived]
+def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, NDArray[np.float64]]]:
+    """Return the words of the first violated facts, with the paths of their arrows."""
+    drawn = [(entry.fact, entry.perceived) for entry in entries if entry.perceived is not None][:MAX_WORDS]
+    return [(fact.relations[0].phrase, arrow_path(ends.arrow(*perceived))) for fact, perceived in drawn]
 
 
 def _draw_ghosts(
@@ -424,10 +423,10 @@ def _finish(
     axes: Axes,
     scene: Scene,
     names: Mapping[str, str],
-    clear: Sequence[Any],
+    arrows: Sequence[NDArray[np.float64]],
     title: str | None,
     ghosts: Sequence[PerceivedObject] = (),
-    words: Sequence[tuple[str, Arrow]] = (),
+    words: Sequence[tuple[str, NDArray[np.float64]]] = (),
 ) -> None:
     """Set the frame of a table from above, and write the names of the things where they cover least."""
     axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
@@ -437,7 +436,8 @@ def _finish(
     draw_directions(axes, heads, INK)
     named = [replace(thing, label=names.get(thing.id) or thing.label or thing.id) for thing in scene.objects]
     quiet = {thing.id for thing in scene.objects if thing.id not in names}
-    write_names(figure, axes, [*named, *ghosts], quiet, [*clear, *points_along(heads, bend=0.0)], words)
+    paths = [*arrows, *(arrow_path(head, bend=0.0) for head in heads)]
+    write_names(figure, axes, [*named, *ghosts], quiet, paths, words)
 
 
 def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[Arrow]:
@@ -486,8 +486,23 @@ def _fill(name: str | None, colours: Mapping[str, str]) -> dict[str, Any]:
 def _edge(thing: str, name: str | None, colours: Mapping[str, str], marks: Marks, sureness: float) -> dict[str, Any]:
     edge = WRONG if thing in marks.wrong else colours.get(name or "") or (INK if name else QUIET)
     style = (0, (1, 2)) if thing in marks.unsure else "-" if name else (0, (4, 3))
-    alpha = 1.0 if sureness >= DECIDED else LEAST_ALPHA + (1.0 - LEAST_ALPHA) * sureness
-    return {"fill": False, "edgecolor": edge, "linewidth": 1.2, "linestyle": style, "alpha": alpha}
+    return {"fill": False, "edgecolor": edge, "linewidth": 1.2, "linestyle": style, "alpha": opacity(sureness)}
+
+
+def opacity(sureness: float) -> float:
+    """Return the opacity of the outline of a thing, which fades with the doubt about its name.
+
+    Parameters
+    ----------
+    sureness
+        Probability of the name.
+
+    Returns
+    -------
+    float
+        Opacity in [0, 1]; 1 for a decided name.
+    """
+    return 1.0 if sureness >= DECIDED else LEAST_ALPHA + (1.0 - LEAST_ALPHA) * sureness
 
 
 def _ghost_keys(belongs: Collection[str], matched: Collection[str]) -> list[Any]:

@@ -12,7 +12,9 @@ import numpy as np
 
 from deixis.answers import count
 from deixis.errors import DeixisError
-from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, Names, new_figure, require_picture
+from deixis.perception.scene import PerceivedObject
+from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, new_figure, require_picture
+from deixis.plots.names import write_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,9 +32,6 @@ SHADES = 96
 
 LINE = 62
 """Number of characters of a line below a picture."""
-
-LETTER = (10.5, 20.0)
-"""Width and height of a letter, in pixels of the camera's image."""
 
 MAX_LINES, MAX_SAID = 7, 3
 """Number of lines below a picture, and of each that speaks; the page has all words."""
@@ -120,13 +119,14 @@ def write_moments(moments: Sequence[Moment], path: Path) -> None:
         If the file cannot be written.
     """
     figure, panels = new_figure(4.6 * len(moments), 4.8, ncols=len(moments), squeeze=False)
-    for axes, moment in zip(panels[0], moments, strict=True):
-        _draw(axes, moment)
+    named = [(axes, _draw(axes, moment)) for axes, moment in zip(panels[0], moments, strict=True)]
+    for axes, things in named:
+        write_names(figure, axes, things)
     _save(figure, path)
 
 
-def _draw(axes: Axes, moment: Moment) -> None:
-    """Draw the camera's image with outlines and names of the things, and what is said below it."""
+def _draw(axes: Axes, moment: Moment) -> list[PerceivedObject]:
+    """Draw the camera's image with outlines, and what is said below it; return the things with their names."""
     axes.set_xticks([])
     axes.set_yticks([])
     axes.set_facecolor(PAPER)
@@ -136,9 +136,10 @@ def _draw(axes: Axes, moment: Moment) -> None:
     pointed = "; orange: pointed at" if moment.pointed else ""
     title = f"{moment.at:.1f} s: {count(len(moment.things), 'thing')}{layout}{pointed}"
     axes.set_title(title, fontsize=9, loc="left", color=INK)
+    things: list[PerceivedObject] = []
     if moment.view is not None and moment.view.exists():
         with np.load(moment.view) as view:
-            _draw_view(axes, moment, view["image"], view["owner"], view["ids"].tolist())
+            things = _draw_view(axes, moment, view["image"], view["owner"], view["ids"].tolist())
     spoken = [*moment.said, *(("wrong", fault) for fault in moment.faults if not moment.said)]
     lines: list[str] = []
     for speaker, words in spoken:
@@ -146,13 +147,15 @@ def _draw(axes: Axes, moment: Moment) -> None:
         lines += whole if len(whole) <= MAX_SAID else [*whole[: MAX_SAID - 1], f"{whole[MAX_SAID - 1]} …"]
     lines = [*lines[:MAX_LINES], *[""] * (MAX_LINES - len(lines))]
     axes.set_xlabel("\n".join(lines), fontsize=8, loc="left", color=INK, family="DejaVu Sans")
+    return things
 
 
-def _draw_view(axes: Axes, moment: Moment, image: Any, owner: Any, ids: Sequence[str]) -> None:
+def _draw_view(axes: Axes, moment: Moment, image: Any, owner: Any, ids: Sequence[str]) -> list[PerceivedObject]:
+    """Draw the image and the outlines of the things; return these as boxes in its pixels, with their names."""
     rows, columns = image.shape[:2]
     axes.imshow(_smooth(image), extent=(0, columns, rows, 0))
     stride = max(1, round(rows / max(len(owner), 1)))
-    names = Names(axes, LETTER, 8)
+    things = []
     for number, id in enumerate(ids):
         own = np.pad(owner == number, 1)
         if id not in moment.things or not own.any():
@@ -162,10 +165,11 @@ def _draw_view(axes: Axes, moment: Moment, image: Any, owner: Any, ids: Sequence
         ys, xs = ((np.arange(length) - 0.5) * stride for length in own.shape)
         axes.contour(xs, ys, own, [0.5], colors=colour, linewidths=2.2 if id in moment.pointed else 1.1)
         y, x = (stride * np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
-        shown = name.replace("_", " ") if name else f"{id}?"
-        names.write(shown, (x[0] + x[-1]) / 2, (y[0] - 12, y[-1] + 12, (y[0] + y[-1]) / 2))
+        low, high = (float(x[0] - stride), float(y[0] - stride)), (float(x[-1]), float(y[-1]))
+        things.append(PerceivedObject(id, low, high, label=name or f"{id}?"))
     axes.set_xlim(0, columns)
     axes.set_ylim(rows, 0)
+    return things
 
 
 def _smooth(image: Any) -> Any:

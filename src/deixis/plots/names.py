@@ -11,16 +11,16 @@ two views). adjustText 1.4.0 does not settle within 5 s, and its names cross the
 from __future__ import annotations
 
 import warnings
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deixis.answers import count
 from deixis.perception.scene import PerceivedObject
-from deixis.plots.arrows import Arrow, points_along
 from deixis.plots.figure import FADED_INK, INK, PAPER, WRONG
-from deixis.plots.placement import Box, NamePlace, name_places, word_places
+from deixis.plots.placement import ArrowPixels, Box, NamePlace, name_places, word_places
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,10 +36,11 @@ def write_names(
     axes: Axes,
     things: Sequence[PerceivedObject],
     quiet: Collection[str] = (),
-    clear: Sequence[tuple[float, float]] = (),
-    words: Sequence[tuple[str, Arrow]] = (),
+    arrows: Sequence[NDArray[np.float64]] = (),
+    words: Sequence[tuple[str, NDArray[np.float64]]] = (),
+    colours: Mapping[str, str] | None = None,
 ) -> None:
-    """Write every thing's label where it covers no other name, and as little else as possible.
+    """Write every thing's label where it covers no other name and no arrow, and as little else as possible.
 
     A name that does not fit on its thing stands beside it. A line joins the two where they are apart; it crosses no
     other thing and no name. Where things are very many, or there is no room, names are left out, and the axis gives
@@ -55,10 +56,12 @@ def write_names(
         What to name: the label is written, or the id of a thing without one. A line break in it starts a new line.
     quiet
         Ids of the things whose names are grey.
-    clear
-        Points in the units of the axes that names should not cover.
+    arrows
+        Points along each arrow of the picture, in the units of the axes, each of shape (k, 2).
     words
         Words with the arrows that they belong to; each is written at the middle of its arrow where there is room.
+    colours
+        Colours of names by the ids of their things, instead of the usual one.
     """
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)  # a letter that the font lacks
@@ -68,17 +71,19 @@ def write_names(
         corners = np.array([[thing.minimum[:2], thing.maximum[:2]] for thing in things]).reshape(-1, 2)
         ends = pixels(corners).reshape(-1, 2, 2)
         outlines = np.hstack([ends.min(axis=1), ends.max(axis=1)])  # an axis may run downwards
-        points = pixels(np.array(clear).reshape(-1, 2))
         frame = Box(*axes.bbox.extents)
+        arrow_pixels = ArrowPixels([pixels(arrow) for arrow in arrows], frame)
         names = [_shown(thing.label or thing.id) for thing in things]
-        places = name_places(outlines, [_measured(figure, name) for name in names], frame, points)
+        places = name_places(outlines, [_measured(figure, name) for name in names], frame, arrow_pixels)
         for thing, name, place in zip(things, names, places, strict=True):
             if place is not None:
-                _write(axes, name, place, thing.id in quiet)
+                look = {"color": (colours or {}).get(thing.id, INK)}
+                _write(axes, name, place, QUIET_LOOK if thing.id in quiet else look)
         placed = [place for place in places if place is not None]
-        arrows = [pixels(np.array(points_along([arrow]))) for _, arrow in words]
+        paths = [pixels(arrow) for _, arrow in words]
         sizes = [_measured(figure, word) for word, _ in words]
-        for (word, _), box in zip(words, word_places(arrows, sizes, outlines, placed, frame, points), strict=True):
+        boxes = word_places(paths, sizes, outlines, placed, frame, arrow_pixels)
+        for (word, _), box in zip(words, boxes, strict=True):
             if box is not None:
                 _write_word(axes, word, box)
         if len(placed) < len(things):
@@ -113,7 +118,10 @@ def _write_word(axes: Axes, word: str, box: Box) -> None:
     axes.text(x, y, word, zorder=950, path_effects=stroke, **look)
 
 
-def _write(axes: Axes, name: str, place: NamePlace, quiet: bool) -> None:
+QUIET_LOOK = {"color": FADED_INK, "style": "italic"}
+
+
+def _write(axes: Axes, name: str, place: NamePlace, look: Mapping[str, Any]) -> None:
     from matplotlib import patheffects
 
     inverse = axes.transData.inverted()
@@ -129,9 +137,8 @@ def _write(axes: Axes, name: str, place: NamePlace, quiet: bool) -> None:
         va="center",
         rotation=place.rotation,
         fontsize=FONT,
-        color=FADED_INK if quiet else INK,
-        style="italic" if quiet else "normal",
         zorder=1000,
         parse_math=False,
         path_effects=[patheffects.withStroke(linewidth=2.2, foreground=PAPER)],
+        **look,
     )

@@ -7,8 +7,9 @@ What a reader needs decides:
 - A line joins a name to its thing where the two are apart, or where another thing (a tray, a plate) carries its own.
 - A line enters no other thing, no name and no line. The one exception is what carries its own thing: where there is no
   room on it, the line has to leave it over its edge.
+- A name touches an arrow only where all places that touch none are far away.
 - A word stands close to its arrow, nearer to this one than to another, and covers no name and no line. It covers the
-  edge of a box, an arrow or its ends only where every other place is worse.
+  edge of a box or an arrow only where every other place is worse.
 """
 
 from __future__ import annotations
@@ -41,8 +42,20 @@ MANY = 150
 NEAR = 120.0
 """Maximum cost of a place, in pixels, with more than :data:`MANY` things."""
 
-HIDING = 3.0
-"""Cost of covering an area around a point, relative to an area of a thing."""
+ON_ARROW = 500.0
+"""Cost, in pixels, of a name that touches an arrow."""
+
+ARROW_LENGTH = 2.0
+"""Cost, in pixels, of a pixel of an arrow that a name or a word touches."""
+
+ACROSS_ARROW = 5.0
+"""Cost, in pixels, of half a pixel of a line that lies on an arrow."""
+
+ON_THING = [(x, y) for y in (0.5, 0.85, 0.15, 0.97, 0.03) for x in (0.5, 0.8, 0.2, 0.97, 0.03)]
+"""Places of a name on its thing, as shares of the free width and height."""
+
+OFF_CENTRE = 2.0
+"""Cost, in pixels, of a name at the left or right end of its thing instead of its middle."""
 
 IN_THE_WAY = 40.0
 """Cost, in pixels, for each other thing whose own name would have to stand where this one does."""
@@ -56,14 +69,14 @@ ON_ANOTHER = 50.0
 OVER_AN_EDGE = 250.0
 """Cost, in pixels, for each thing whose edge a line crosses, because it carries the thing of the name."""
 
-POINT = 8.0
-"""Side of the square around a point that names avoid, in pixels."""
+ARROW_MARGIN = 3.0
+"""Minimum distance of a name from the middle of an arrow's line, in pixels: half of an arrow head."""
 
 LEADER = 10.0
 """Minimum number of pixels between a name and its thing at which a line joins them."""
 
-WITHIN = 0.98
-"""Share of a thing that lies on another one if that carries it."""
+WITHIN = 0.85
+"""Minimum share of a thing that lies on another one if that carries it; in the view of a camera, a cup sticks out."""
 
 LARGER = 1.2
 """Minimum area of what carries a thing, relative to the thing; things of one size only lie in one place."""
@@ -77,11 +90,8 @@ AWAY = (1.0, 6.0, 12.0, 20.0)
 EDGE = 8.0
 """Cost of a pixel of the edge of a box, in pixels of distance, that a word covers."""
 
-END = 120.0
-"""Cost of an end of its arrow that a word covers, in pixels of distance."""
-
-HIDDEN = 4.0
-"""Cost of a point of an arrow that a word covers, in pixels of distance."""
+WORD_ON_ARROW = 60.0
+"""Cost of a word that touches an arrow, in pixels of distance."""
 
 OFF_MIDDLE = 60.0
 """Cost of a word at the end of its arrow instead of its middle, in pixels of distance."""
@@ -163,11 +173,76 @@ class _Candidate(NamedTuple):
     inside: bool
 
 
+class ArrowPixels:
+    """Pixels of all arrows of a picture, as sums over rectangles from its corner.
+
+    Parameters
+    ----------
+    arrows
+        Points along each arrow, in pixels, each of shape (k, 2).
+    frame
+        Area of the picture.
+    """
+
+    def __init__(self, arrows: Sequence[NDArray[np.float64]], frame: Box) -> None:
+        self._corner = np.array([frame.left, frame.low])
+        self._sides = np.ceil([frame.right - frame.left, frame.high - frame.low]).astype(int) + 1
+        pixels = np.zeros(self._sides, dtype=np.int64)
+        for arrow in arrows:
+            x, y = np.clip(np.round(_dense(arrow) - self._corner).astype(int), 0, self._sides - 1).T
+            pixels[x, y] = 1
+        self._sums = np.pad(pixels, ((1, 0), (1, 0))).cumsum(axis=0).cumsum(axis=1)
+
+    def touched(self, boxes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Count the pixels of arrows in each of some boxes and within :data:`ARROW_MARGIN` of it.
+
+        Parameters
+        ----------
+        boxes
+            Least x and y, greatest x and y, shape (n, 4).
+
+        Returns
+        -------
+        ndarray
+            The numbers, shape (n,).
+        """
+        low = np.ceil(boxes[:, :2] - ARROW_MARGIN - self._corner).astype(int)
+        high = np.floor(boxes[:, 2:] + ARROW_MARGIN - self._corner).astype(int) + 1
+        (x0, y0), (x1, y1) = np.clip(low, 0, self._sides).T, np.clip(high, 0, self._sides).T
+        counts = self._sums[x1, y1] - self._sums[x0, y1] - self._sums[x1, y0] + self._sums[x0, y0]
+        numbers: NDArray[np.float64] = counts.astype(np.float64)
+        return numbers
+
+    def along(self, line: Segment) -> int:
+        """Count the half pixels of a line that lie on arrows.
+
+        Parameters
+        ----------
+        line
+            The line.
+
+        Returns
+        -------
+        int
+            The number of half pixels.
+        """
+        x, y = np.clip(np.round(_dense(np.array(line)) - self._corner).astype(int), 0, self._sides - 1).T
+        return int((self._sums[x + 1, y + 1] - self._sums[x, y + 1] - self._sums[x + 1, y] + self._sums[x, y]).sum())
+
+
+def _dense(path: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (n, 2) along a path (k, 2), less than half a pixel apart."""
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    along = np.concatenate([[0.0], steps.cumsum()])
+    at = np.linspace(0.0, along[-1], int(2 * along[-1]) + 2)
+    return np.stack([np.interp(at, along, path[:, axis]) for axis in (0, 1)], axis=1)
+
+
 def name_places(
     outlines: NDArray[np.float64],
     sizes: Sequence[tuple[float, float]],
     frame: Box,
-    points: NDArray[np.float64],
+    arrows: ArrowPixels,
 ) -> list[NamePlace | None]:
     """Find places for the names of things, those of the smallest things first.
 
@@ -179,8 +254,8 @@ def name_places(
         Width and height of each name, in pixels.
     frame
         Area within which names must stand.
-    points
-        Points that names should not cover, shape (m, 2).
+    arrows
+        The arrows, which names should not touch.
 
     Returns
     -------
@@ -188,11 +263,10 @@ def name_places(
         The place of each name; None for one without room.
     """
     most = float("inf") if len(outlines) <= MANY else NEAR
-    squares = _squares(points)
     found: dict[int, NamePlace] = {}
     boxes = [Box(*outline) for outline in outlines.tolist()]
     for index in sorted(range(len(boxes)), key=lambda index: boxes[index].area):
-        surroundings = _Surroundings(boxes[index], np.delete(outlines, index, axis=0), list(found.values()), squares)
+        surroundings = _Surroundings(boxes[index], np.delete(outlines, index, axis=0), list(found.values()), arrows)
         candidates = surroundings.free(list(_candidates(boxes[index], *sizes[index], most)), frame)
         place = surroundings.cheapest(candidates, most)
         if place is None:
@@ -213,9 +287,11 @@ def _candidates(outline: Box, width: float, height: float, most: float) -> Itera
     for rotation, w, h in ((0, width, height), (90, height, width)):
         room_x, room_y = outline.right - outline.left - w, outline.high - outline.low - h
         if room_x >= -3 and room_y >= -3:
-            for share in (0.5, 0.85, 0.15, 0.97, 0.03):
-                y = outline.low + h / 2 + share * max(room_y, 0)
-                yield _Candidate(around(centre_x, y, w, h), rotation, 20.0 * rotation / 90 + abs(share - 0.5), True)
+            for share_x, share_y in ON_THING:
+                x = outline.left + w / 2 + share_x * room_x if room_x > 0 else centre_x
+                y = outline.low + h / 2 + share_y * max(room_y, 0)
+                cost = 20.0 * rotation / 90 + abs(share_y - 0.5) + 2 * OFF_CENTRE * abs(share_x - 0.5)
+                yield _Candidate(around(x, y, w, h), rotation, cost, True)
     for ring in range(RINGS):
         cost = 60.0 + 25.0 * ring
         if cost >= most:
@@ -232,10 +308,8 @@ def _candidates(outline: Box, width: float, height: float, most: float) -> Itera
 class _Surroundings:
     """Surroundings of one thing: what its name must or should not cover."""
 
-    def __init__(
-        self, own: Box, others: NDArray[np.float64], placed: Sequence[NamePlace], squares: NDArray[np.float64]
-    ) -> None:
-        self._own, self._all, self._squares = own, others, squares
+    def __init__(self, own: Box, others: NDArray[np.float64], placed: Sequence[NamePlace], arrows: ArrowPixels) -> None:
+        self._own, self._all, self._arrows = own, others, arrows
         carries = own.shared(others) >= WITHIN * own.area
         self._carriers, self._foreign = others[carries], others[~carries]
         sides = self._carriers[:, 2:] - self._carriers[:, :2]
@@ -272,13 +346,15 @@ class _Surroundings:
         box = candidate.box
         # A name on its thing may cover what that lies on, and one beside it only what it lies on wholly.
         beneath = self._foreign if candidate.inside else np.vstack([self._foreign, self._carriers[~on_carrier]])
-        covered = float(box.shared(beneath).sum() + HIDING * box.shared(self._squares).sum())
-        total = COVERED * covered / box.area
+        total = COVERED * float(box.shared(beneath).sum()) / box.area
+        touched = float(self._arrows.touched(np.array([box]))[0])
+        total += ON_ARROW * bool(touched) + ARROW_LENGTH * touched
         total += COVERED_EDGE * float(_covered_edges(np.array([box]), self._all)[0])
         if candidate.inside:
             return total
         total += IN_THE_WAY * box.in_the_way_of(self._all)
         if leader is not None:
+            total += ACROSS_ARROW * self._arrows.along(leader)
             total += ON_ANOTHER * bool(on_carrier.any())
             return total + OVER_AN_EDGE * int(crosses(leader, self._carriers[~on_carrier]).sum())
         return total + NEARER_TO_ANOTHER * _seems_another(box, self._own, self._foreign)
@@ -360,7 +436,7 @@ def word_places(
     outlines: NDArray[np.float64],
     names: Sequence[NamePlace],
     frame: Box,
-    points: NDArray[np.float64],
+    pixels: ArrowPixels,
 ) -> list[Box | None]:
     """Find places for the words of arrows, after the names have theirs.
 
@@ -376,8 +452,8 @@ def word_places(
         Places of the names.
     frame
         Area within which words must stand.
-    points
-        Points that words should not cover, shape (m, 2).
+    pixels
+        Pixels of these and all other arrows, which words should not touch.
 
     Returns
     -------
@@ -389,8 +465,8 @@ def word_places(
     found: list[Box | None] = []
     for index, (path, size) in enumerate(zip(arrows, sizes, strict=True)):
         boxes, cost = _beside(path, *size)
-        cost = cost + EDGE * _covered_edges(boxes, outlines) + HIDDEN * _held(boxes, points).sum(axis=1)
-        cost += END * _shared(boxes, _squares(path[[0, -1]])).astype(bool).sum(axis=1)
+        touched = pixels.touched(boxes)
+        cost = cost + EDGE * _covered_edges(boxes, outlines) + WORD_ON_ARROW * (touched > 0) + ARROW_LENGTH * touched
         others = [other for number, other in enumerate(arrows) if number != index]
         if others:
             own, another = _distances(boxes, path), _distances(boxes, np.vstack(others))
@@ -419,11 +495,6 @@ def _beside(path: NDArray[np.float64], width: float, height: float) -> tuple[NDA
     return np.array(boxes), np.array(cost)
 
 
-def _squares(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the squares (m, 4) around points (m, 2)."""
-    return np.hstack([points - POINT / 2, points + POINT / 2])
-
-
 def _shared(boxes: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the areas (m, n) in common between boxes (m, 4) and others (n, 4)."""
     low = np.maximum(boxes[:, None, :2], others[:, :2])
@@ -443,12 +514,6 @@ def _covered_edges(boxes: NDArray[np.float64], outlines: NDArray[np.float64]) ->
         within = (boxes[:, None, axis] < edge) & (edge < boxes[:, None, axis + 2])
         length += np.where(within, common[:, :, 1 - axis], 0.0).sum(axis=1)
     return length
-
-
-def _held(boxes: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Say which points (k, 2) lie in each of some boxes (m, 4), shape (m, k)."""
-    within = (boxes[:, None, :2] < points) & (points < boxes[:, None, 2:])
-    return within[:, :, 0] & within[:, :, 1]
 
 
 def _distances(boxes: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,10 +13,10 @@ from numpy.typing import NDArray
 from deixis.errors import DeixisError
 from deixis.perception.detection.settings import PlaneSettings
 from deixis.perception.tracking.situation import scene_of
-from deixis.plots.arrows import directions, draw_directions, points_along
+from deixis.plots.arrows import arrow_path, directions, draw_directions
 from deixis.plots.camera import MARGIN, CameraPicture, camera_of, colours_of, draw_camera
 from deixis.plots.figure import INK, canvas, dress_table, new_figure, save
-from deixis.plots.grounding import scene_figure
+from deixis.plots.grounding import opacity, scene_figure
 from deixis.plots.names import write_names
 
 if TYPE_CHECKING:
@@ -185,7 +186,7 @@ def perceived_figure(scene: Scene) -> Figure:
     heads = directions(scene)
     draw_directions(axes[0], heads, INK)
     named = [replace(thing, label=thing.label or thing.id) for thing in scene.objects]
-    write_names(figure, axes[0], named, clear=points_along(heads, bend=0.0))
+    write_names(figure, axes[0], named, arrows=[arrow_path(head, bend=0.0) for head in heads])
     if camera is not None:
         draw_camera(axes[1], camera)
         write_names(figure, axes[1], camera.things)
@@ -206,7 +207,7 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
 
 
 def recognised_figure(found: Recognised, axes: Axes | None = None) -> Figure:
-    """Draw recognised things into axes or into a new figure.
+    """Draw recognised things into axes or into a new figure; the outlines of doubtful ones are faded.
 
     Parameters
     ----------
@@ -234,18 +235,23 @@ def recognised_figure(found: Recognised, axes: Axes | None = None) -> Figure:
         figure, axes = canvas(axes, 0.0, 0.0)
         scale = axes.get_window_extent().height / figure.dpi / float(window[1][1] - window[0][1])
     _points(axes, points, labels.astype(np.int32), window, scale)
-    _dress(axes, found.scene, window, "What was recognised")
+    named = {thing.id: _name(thing, found) for thing in found.scene.objects}
+    sureness = {id: probability for id, (_, probability) in named.items() if probability is not None}
+    _dress(axes, found.scene, window, "What was recognised", sureness)
     if not found.scene.objects:
         _say(axes, "there is nothing in this scene")
     if found.answers:
         axes.set_xlabel(f"{axes.get_xlabel()}\n\n{LEGEND}", fontsize=8, color=INK)
-    named = [replace(thing, label=_answered(thing, found)) for thing in found.scene.objects]
-    write_names(figure, axes, named)
+    shown = {
+        id: f"{id} {name}" if probability is None else f"{id} {name} {probability:.2f}"
+        for id, (name, probability) in named.items()
+    }
+    write_names(figure, axes, [replace(thing, label=shown[thing.id]) for thing in found.scene.objects])
     return figure
 
 
-def _answered(thing: PerceivedObject, found: Recognised) -> str:
-    """Return the id of a thing, its name, and the probability of the name where it was recognised.
+def _name(thing: PerceivedObject, found: Recognised) -> tuple[str, float | None]:
+    """Return the name of a thing, and the probability of the name where it was recognised.
 
     Without a sure name, return the most likely one with '?' where it is more likely than ``unknown``.
     """
@@ -256,8 +262,7 @@ def _answered(thing: PerceivedObject, found: Recognised) -> str:
         likeliest = max(answer.candidates, key=lambda one: one.probability)
         if likeliest.probability > answer.unknown:
             name, probability = f"{likeliest.category}?", likeliest.probability
-    name = name if len(name) <= MAX_NAME_LENGTH else f"{name[: MAX_NAME_LENGTH - 1]}…"
-    return f"{thing.id} {name}" if probability is None else f"{thing.id} {name} {probability:.2f}"
+    return (name if len(name) <= MAX_NAME_LENGTH else f"{name[: MAX_NAME_LENGTH - 1]}…"), probability
 
 
 def window_of(points: NDArray[np.float32], scene: Scene, found: Detected) -> Window:
@@ -331,14 +336,16 @@ def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.int32], 
         axes.scatter(1.0 * points[shown, 0], 1.0 * points[shown, 1], s=size, c=colours, **style)
 
 
-def _dress(axes: Axes, scene: Scene, window: Window, title: str) -> None:
-    """Draw the boxes, each in a darker tone of its thing's colour, and the frame around them."""
+def _dress(axes: Axes, scene: Scene, window: Window, title: str, sureness: Mapping[str, float] | None = None) -> None:
+    """Draw the boxes, each in a darker tone of its thing's colour and faded by doubt, and the frame around them."""
     from matplotlib.patches import Rectangle
 
     edges = 0.6 * colours_of(np.arange(len(scene.objects)))
     for thing, edge in zip(scene.objects, edges, strict=True):
         (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
-        axes.add_patch(Rectangle((x, y), right - x, top - y, fill=False, edgecolor=tuple(edge), linewidth=1.1))
+        alpha = opacity((sureness or {}).get(thing.id, 1.0))
+        look: dict[str, Any] = {"edgecolor": tuple(edge), "linewidth": 1.1, "alpha": alpha}
+        axes.add_patch(Rectangle((x, y), right - x, top - y, fill=False, **look))
     axes.set_xlim(window[0][0], window[1][0])
     axes.set_ylim(window[0][1], window[1][1])
     axes.set_aspect("equal")

@@ -12,7 +12,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from deixis.answers import Answer
+from deixis.answers import Answer, rounded
 from deixis.errors import DeixisError
 from deixis.extras import require
 
@@ -424,16 +424,18 @@ def html_table(rows: Sequence[Row], total: int) -> str:
     columns = list(dict.fromkeys(key for row in rows for key in row))
     head = "".join(f"<th style='text-align:left'>{html.escape(name)}</th>" for name in columns)
     body = "".join(
-        "<tr>" + "".join(f"<td style='text-align:left'>{_cell(row.get(name))}</td>" for name in columns) + "</tr>"
+        "<tr>" + "".join(f"<td style='text-align:left'>{_cell(name, row.get(name))}</td>" for name in columns) + "</tr>"
         for row in rows
     )
     more = f"<p>… and {total - len(rows)} more rows</p>" if total > len(rows) else ""
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
 
 
-def _cell(value: Any) -> str:
+def _cell(name: str, value: Any) -> str:
     if value is None:
         return ""
+    if name == "probability" and isinstance(value, float):
+        return rounded(value)
     return f"{value:.3g}" if isinstance(value, float) else html.escape(str(value))
 
 

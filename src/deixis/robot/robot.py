@@ -36,6 +36,7 @@ from deixis.reasoning.comparison.explanation import explain
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT, Diary, RobotModule
 from deixis.robot.expected import LOOK_INTERVAL, MIN_MATCH_PROBABILITY, ExpectedObject, Sighting, Standing, introduced
+from deixis.robot.kept import KeptElsewhere, kept_elsewhere
 from deixis.robot.layouts import LearnedLayout
 from deixis.robot.lessons import MIN_SETTLED_PROBABILITY, QUESTION_COST, Question, Settled, SettledBy, TableLesson
 from deixis.robot.looking import Fault, Look, TableKnowledge
@@ -541,16 +542,18 @@ class Robot(Closing):
     @overload
     def told(
         self, text: str, by: str = ..., at: float | None = ..., event: str | None = ...
-    ) -> Told | tuple[ExpectedObject, ...]: ...
+    ) -> Told | KeptElsewhere | tuple[ExpectedObject, ...]: ...
 
     @checks_arguments
     def told(
         self, text: str | Script, by: str = "user", at: float | None = None, event: str | None = None
-    ) -> Told | tuple[ExpectedObject, ...]:
+    ) -> Told | KeptElsewhere | tuple[ExpectedObject, ...]:
         """Learn the layout that a text describes from the present table, or expect the objects that it introduces.
 
         *There is a red ball on the left* states what is present. The robot expects each object that such a text
         introduces until it sees a thing that fits, or has seen the place empty for long enough (:attr:`expected`).
+        *The cups belong in the kitchen* tells where things are kept away from the table: it is noted as something that
+        was said, and no layout is learned from it.
 
         Parameters
         ----------
@@ -565,9 +568,9 @@ class Robot(Closing):
 
         Returns
         -------
-        Told or tuple of ExpectedObject
-            The lesson, with the roles that are known and those that wait; or the expected objects, some of which may be
-            seen already.
+        Told, KeptElsewhere or tuple of ExpectedObject
+            The lesson, with the roles that are known and those that wait; where things are kept; or the expected
+            objects, some of which may be seen already.
 
         Raises
         ------
@@ -583,6 +586,11 @@ class Robot(Closing):
         if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
             return self._expect_objects(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
+        if isinstance(text, str) and script.name is None:
+            kept = kept_elsewhere(script, self.session.ontology)
+            if kept is not None:
+                self.diary.heard(text, by, self._time(at), self.diary.event(event, "sentence"))
+                return kept
         seen = self.knowledge().recognised(self.scene)
         words = text if isinstance(text, str) else script.reading.text if script.reading else format_script(script)
         now, event = self._time(at), self.diary.event(event, "sentence")

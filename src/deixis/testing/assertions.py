@@ -7,6 +7,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
+from deixis.answers import rounded
 from deixis.arguments import checks_arguments
 
 if TYPE_CHECKING:
@@ -157,7 +158,7 @@ def assert_grounds(
         if got != (None if thing is None else str(thing)):
             wrong.append(f"{name} must be {thing or 'absent'}, got {got or 'absent'}")
         elif decided and match is not None and not match.decided:
-            probability = "" if match.probability is None else f" (probability {match.probability:.3g})"
+            probability = "" if match.probability is None else f" (probability {rounded(match.probability)})"
             others = ", ".join(other.perceived or "absent" for other in match.alternatives)
             wrong.append(f"{name} is {got}{probability} and not decided; it could be {others or 'something else'}")
     if wrong:

@@ -62,7 +62,7 @@ def test_bad_scripts(tmp_path: Path, text: str, command: tuple[str, ...]) -> Non
     assert refused(*command, path).startswith(f"deixis: {path}:1:")
 
 
-def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
+def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
     path = tmp_path / "bad.layout"
     path.write_text("fork lft of plate\nfork left of plate\nknife rigt of plate\n", encoding="utf-8")
     err = refused("parse", path)

@@ -152,6 +152,11 @@ def test_the_script_of_another_shell_than_the_running_one(monkeypatch: pytest.Mo
     assert deixis("--show-completion", "fish")[1].startswith("complete --command deixis ")
 
 
+def test_the_help_says_that_a_shell_may_be_named() -> None:
+    text = " ".join(deixis("--help")[1].split())
+    assert "or for the one that is named: bash, zsh or fish" in text and "customize" not in text
+
+
 @pytest.mark.parametrize("option", ["--show-completion", "--install-completion"])
 def test_an_unknown_shell_is_named_in_the_error(option: str) -> None:
     code, out, err = deixis(option, "csh")

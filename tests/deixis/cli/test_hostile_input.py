@@ -236,7 +236,7 @@ def test_long_input_takes_bounded_time_and_memory(
 
 
 @pytest.mark.parametrize("redirected", ["<&-", "< /", "< /dev/null", "< /bin/sh"])
-def test_questions_without_somebody_who_answers(redirected: str) -> None:
+def test_questions_without_a_person_who_answers(redirected: str) -> None:
     line = f"exec {sys.executable} -m deixis.cli.app ground --ask {SCRIPT} {SCENE} {redirected}"
     env = {**os.environ, "PYTHONPATH": str(Path(package.__file__).parents[1])}
     ran = subprocess.run(["sh", "-c", line], env=env, capture_output=True, text=True, timeout=60, check=False)

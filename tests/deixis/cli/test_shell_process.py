@@ -96,7 +96,7 @@ def test_exit_codes(tmp_path: Path) -> None:
     assert bad.stderr == f"deixis: {tmp_path / 'missing.layout'}: there is no such file\n"
 
 
-def test_a_pipe_that_closes_early_is_no_traceback(tmp_path: Path) -> None:
+def test_a_pipe_that_closes_early_gives_no_traceback(tmp_path: Path) -> None:
     script = tmp_path / "long.layout"
     script.write_text("\n".join(f"fork{i} left of plate" for i in range(5_000)), encoding="utf-8")
     command = [sys.executable, "-m", "deixis.cli.app", "parse", str(script)]
@@ -111,7 +111,7 @@ def test_a_pipe_that_closes_early_is_no_traceback(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
-def test_a_full_disk_is_no_traceback() -> None:
+def test_a_full_disk_gives_no_traceback() -> None:
     command = [sys.executable, "-m", "deixis.cli.app", "parse", str(SCRIPT1)]
     with Path("/dev/full").open("w") as full:
         ran = subprocess.run(command, env=environment(), stdout=full, stderr=subprocess.PIPE, text=True, check=False)

@@ -88,7 +88,7 @@ NUMBERS = count()
 @pytest.mark.slow
 @settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.integers(0, 5), min_size=2, max_size=7))
-def test_any_order_of_learning_and_forgetting_comes_to_the_same(
+def test_any_order_of_learning_and_forgetting_is_equivalent(
     lessons: list[Lesson], tmp_path: Path, turns: list[int]
 ) -> None:
     """Forget a lesson that is stored when its turn comes; otherwise learn it."""
@@ -271,7 +271,7 @@ def test_of_a_batch_all_lessons_are_kept_or_none(tmp_path: Path) -> None:
         assert session.learn_all([]) == ()
 
 
-def test_many_lessons_come_part_by_part_to_the_same(
+def test_many_lessons_in_parts_give_the_same_memory(
     lessons: list[Lesson], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with SemanticMemory.open(tmp_path / "single", create=True) as memory:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import PerceivedObject
-from deixis.plots.arrows import DIRECTIONS, Ends, Point, directions, draw_arrows, points_along
+from deixis.plots.arrows import DIRECTIONS, Ends, Point, arrow_path, directions, draw_arrows
 from deixis.plots.grounding import scene_figure
 
 PLATE = PerceivedObject("plate", (0.0, 0.0), (10.0, 10.0))
@@ -70,14 +70,14 @@ def test_a_thing_that_cannot_be_seen_has_its_arrow_nevertheless() -> None:
     assert held(start, under)
 
 
-def test_points_along_an_arrow_lie_where_it_is_drawn() -> None:
+def test_the_path_of_an_arrow_lies_where_it_is_drawn() -> None:
     axes = Figure(figsize=(4.0, 4.0)).add_subplot()
     axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
     arrow = ((0.1, 0.2), (0.8, 0.5))
     draw_arrows(axes, [arrow], "black", 1.0, 1)
     (drawn,) = axes.patches
     start, control, _ = np.asarray(drawn.get_path().vertices)[:3]
-    points = np.array(points_along([arrow]))
+    points = arrow_path(arrow)
     assert start == pytest.approx(arrow[0]) and points[[0, -1]] == pytest.approx(np.array(arrow))
     middle = (np.array(arrow[0]) + 2 * control + np.array(arrow[1])) / 4  # of a quadratic Bezier curve
     assert np.linalg.norm(points - middle, axis=1).min() < 0.01

@@ -5,6 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from deixis.perception.scene import PerceivedObject, Scene
+from deixis.plots.arrows import arrow_path
 from deixis.plots.figure import dress_table, new_figure
 from deixis.plots.names import write_names
 from deixis.plots.placement import MANY, crosses
@@ -40,7 +41,7 @@ def test_names_are_written_where_there_is_room_among_many_things() -> None:
     assert f"{MANY + 1 - len(texts)} names left out" in axes.get_xlabel()
 
 
-def test_nothing_is_said_of_names_where_all_are_written() -> None:
+def test_the_axis_counts_no_names_where_all_are_written() -> None:
     (axes,) = written(grid(20, 2.0)).axes
     assert len(axes.texts) == 20 and "left out" not in axes.get_xlabel()
 
@@ -50,7 +51,7 @@ def test_a_name_as_long_as_the_picture_is_shortened() -> None:
     assert [text.get_text() for text in axes.texts] == ["x" * 47 + "…"]
 
 
-def test_what_has_no_name_of_its_own_is_written_in_another_hand() -> None:
+def test_names_of_unnamed_things_are_grey_and_slanted() -> None:
     (axes,) = written(grid(2, 2.0), quiet=("thing_1",)).axes
     assert [text.get_fontstyle() for text in axes.texts] == ["normal", "italic"]
 
@@ -73,7 +74,8 @@ def test_a_word_covers_neither_end_of_a_short_arrow() -> None:
     axes.set_xlim(0, 10)
     axes.set_ylim(0, 10)
     arrow = ((5.0, 5.0), (5.2, 4.8))
-    write_names(figure, axes, [], words=[("above", arrow)])
+    path = arrow_path(arrow)
+    write_names(figure, axes, [], arrows=[path], words=[("above", path)])
     (word,) = axes.texts
     extent = word.get_window_extent()
     assert not any(extent.contains(*axes.transData.transform(end)) for end in arrow)

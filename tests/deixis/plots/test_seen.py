@@ -15,7 +15,7 @@ from deixis.learning.views.views import Recognised
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.detection.table.viewpoint import in_frame
-from deixis.perception.recognition.calibration import Calibration
+from deixis.perception.recognition.calibration import SHIPPED, Calibration
 from deixis.perception.recognition.recogniser import Recognition
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots import seen as plot_seen
@@ -128,3 +128,12 @@ def test_a_picture_of_recognised_things_explains_its_numbers(tmp_path: Path, mon
     plot_seen.plot_recognised(Recognised(Scene(things), {"o1": answer}), tmp_path / "seen.png")
     assert [text.get_text() for text in drawn[0].axes[0].texts] == ["o1 unknown 0.39"]
     assert "For 'unknown', it is the probability that none" in drawn[0].axes[0].get_xlabel()
+
+
+def test_the_outline_of_a_doubtful_thing_is_faded() -> None:
+    things = [PerceivedObject(f"o{k}", (0.3 * k, 0.0), (0.3 * k + 0.2, 0.2)) for k in range(3)]
+    unknown = {f"o{k}": Recognition(None, (), share, SHIPPED, True, ()) for k, share in enumerate((1.0, 0.6))}
+    (axes,) = plot_seen.recognised_figure(Recognised(Scene(tuple(things)), unknown)).axes
+    sure, doubtful, unasked = (patch.get_alpha() for patch in axes.patches)
+    assert sure == unasked == 1.0
+    assert doubtful is not None and 0.2 < doubtful < 1.0

@@ -178,7 +178,7 @@ def test_description_of_a_layout_expects_nothing(robot: Robot) -> None:
     )  # fmt: skip
 
 
-def test_robot_writes_what_it_was_told_shown_and_concluded(tmp_path: Path) -> None:
+def test_robot_writes_what_it_heard_saw_and_concluded(tmp_path: Path) -> None:
     robot = Robot(tmp_path)
     cloud = PointCloud(np.random.default_rng(0).uniform(0, 0.1, (200, 3)).astype(np.float32))
     cup = PerceivedObject("o1", (0.0, 0.0, 0.0), (0.1, 0.1, 0.1), cloud=cloud)

@@ -152,7 +152,7 @@ def test_experiences_add_to_the_counts_of_one_layout(tmp_path: Path) -> None:
     robot.close()
 
 
-def test_lesson_that_was_told_is_not_learned_again(tmp_path: Path) -> None:
+def test_lesson_that_was_taught_is_not_learned_again(tmp_path: Path) -> None:
     robot = Robot(tmp_path)
     with Blackboard.open(tmp_path, create=True) as board:
         start_recording(board, "first table", 0.0, by="test")

@@ -57,7 +57,7 @@ def test_a_broken_script_fails_with_its_place(pytester: pytest.Pytester) -> None
     result.stdout.fnmatch_lines(["*dinner.layout:1:*"])
 
 
-def test_layouts_without_expectations_are_no_tests(pytester: pytest.Pytester) -> None:
+def test_layouts_without_expectations_are_not_tests(pytester: pytest.Pytester) -> None:
     (pytester.path / "dinner.layout").write_text(LAYOUT)
     pytester.runpytest_inprocess(*OPTIONS).assert_outcomes()
 
@@ -99,7 +99,7 @@ def test_an_expectation_may_follow_the_word_expect() -> None:
         ("# expect:\nfork left of plate\n", "dinner.layout:2:1: an expectation block is comments up to the end"),
     ],
 )
-def test_lines_that_are_no_expectation_are_refused(block: str, message: str) -> None:
+def test_lines_that_are_not_an_expectation_are_refused(block: str, message: str) -> None:
     with pytest.raises(DeixisError, match=message):
         list(expectations_in(block, "dinner.layout"))
 

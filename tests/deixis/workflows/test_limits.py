@@ -88,7 +88,7 @@ def test_where_memory_is_short_probabilities_are_beliefs(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("limit", [0.0, -1.0, float("nan")])
-def test_what_is_no_memory_limit_is_refused(limit: float) -> None:
+def test_an_invalid_memory_limit_is_refused(limit: float) -> None:
     with pytest.raises(SettingError, match="memory limit"):
         GroundingRequest(parse_script("a left of b"), read_scene({"objects": []}), memory_limit=limit)
 

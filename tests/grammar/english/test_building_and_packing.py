@@ -146,7 +146,7 @@ def test_amounts_and_acts_have_no_place(noun: str) -> None:
     assert not can_have_a_place(noun, known_nouns(default_ontology().kinds))
 
 
-def test_states_of_what_is_to_be_done_are_not_stated() -> None:
+def test_needs_and_alternative_names_state_nothing() -> None:
     reading = read("The jar stands on the box, which needs to be emptied. The pieces are known as pawns.")
     assert [str(fact.content) for fact in reading.stated if fact.asserted] == ["on(jar, box)"]
 
@@ -283,7 +283,7 @@ def test_goal_of_motion_is_that_of_the_object(text: str, expected: list[str]) ->
          ["on(lid, box)"]),
     ],
 )  # fmt: skip
-def test_means_put_things_where_they_are_told(text: str, expected: list[str]) -> None:
+def test_means_put_things_where_the_sentence_says(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
 
 

@@ -182,7 +182,7 @@ def test_viewpoints(text: str, at: str | None, facing: str | None, back: str | N
     ["You want the chair next to the desk.", "The chair you are looking for is next to the desk.",
      "You need to select the chair next to the desk.", "Please choose the chair next to the desk."],
 )  # fmt: skip
-def test_wishes_say_nothing_of_places(text: str) -> None:
+def test_wishes_state_no_places(text: str) -> None:
     sentence = parsed(text)
     phrase = sentence.fragment or sentence.clauses[0].subject
     assert phrase is not None
@@ -192,7 +192,7 @@ def test_wishes_say_nothing_of_places(text: str) -> None:
     assert sentence.understood == 1
 
 
-def test_headings_and_steps_are_told_from_sentences() -> None:
+def test_headings_and_steps_are_distinguished_from_sentences() -> None:
     text = "SETUP OF THE TABLE\n\n1. Place the plate in the middle.\n2. Put the fork to its left.\n"
     heading, *steps = parse_english(text)
     assert heading.heading

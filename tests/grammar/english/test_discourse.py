@@ -68,7 +68,7 @@ def test_a_place_on_the_surface_has_no_argument() -> None:
     assert reading(text).surface == "desk"
 
 
-def test_what_is_absent_is_no_object_of_the_script() -> None:
+def test_what_is_absent_is_not_an_object_of_the_script() -> None:
     script = read_english("The bowl is left of the jug. No spoon was found.")
     assert script.objects == ("bowl", "jug")
     assert script.reading is not None and script.reading.absent == ("spoon",)

@@ -50,7 +50,7 @@ def test_words_for_things_have_places(noun: str) -> None:
     assert can_have_a_place(noun, known_nouns(default_ontology().kinds))
 
 
-def test_facts_of_what_is_no_thing_are_reported() -> None:
+def test_facts_about_phrases_that_name_no_thing_are_reported() -> None:
     reading = read("The jug stands behind the cup. The jug stands above eye level. The plates are near the jug.")
     assert [str(f.content) for f in reading.stated if f.asserted] == ["behind(jug, cup)", "near(plates, jug)"]
     (problem, *_) = reading.sentences[1].problems

@@ -6,7 +6,7 @@ import pytest
 
 from deixis.grammar.english.chunking.chunk import Chunk
 from deixis.grammar.english.clauses.readings import MAX_OTHER_JOINTS, other_joints, settled
-from deixis.grammar.english.confidence import Guess, is_doubtful
+from deixis.grammar.english.confidence import Guess, Standing, standing
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.reader import read_english
 
@@ -62,8 +62,7 @@ def test_predicate_that_a_rival_reading_lacks_is_contested() -> None:
 
 
 def test_fact_of_a_contested_predicate_is_not_asserted() -> None:
-    guesses = [Guess.CONTESTED]
-    assert is_doubtful(guesses) and not is_doubtful([])
+    assert [standing(guesses) for guesses in ([Guess.CONTESTED], [])] == [Standing.DOUBTFUL, Standing.ASSERTED]
 
 
 def test_number_of_other_readings_is_bounded() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import cast
 
 import pytest
 from hypothesis import example, given, settings
@@ -11,9 +12,10 @@ from timing import processor_time_below
 
 from deixis.deadline import Deadline
 from deixis.grammar.english.parse import parse_english
-from deixis.grammar.english.tokens import _CONTRASTS, _DENIALS, _RARELY, words_of
+from deixis.grammar.english.reader import read_english
+from deixis.grammar.english.tokens import _CONTRASTS, _DENIALS, _RARELY, MAX_SENTENCE_LENGTH, sentences, words_of
 from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence
-from deixis.grammar.errors import ScriptTimeError
+from deixis.grammar.errors import ScriptError, ScriptTimeError
 
 WORDS = st.sampled_from(
     [
@@ -172,6 +174,48 @@ def test_long_texts_end_soon(text: str) -> None:
 def test_a_time_limit_holds() -> None:
     with pytest.raises(ScriptTimeError, match="time limit reached"):
         parse_english("The cup is on the tray. " * 10, deadline=Deadline.after(-1))
+
+
+class PassingDeadline:
+    """Deadline that passes after a number of questions."""
+
+    def __init__(self, questions: int) -> None:
+        self.questions = questions
+
+    @property
+    def passed(self) -> bool:
+        """Count a question."""
+        self.questions -= 1
+        return self.questions < 0
+
+    def share(self, fraction: float) -> PassingDeadline:
+        """Return this deadline."""
+        return self
+
+
+def test_what_was_read_at_a_time_limit_is_kept() -> None:
+    text = "The cup is on the tray. The fork is left of the cup. " * 3
+    with pytest.raises(ScriptTimeError, match="after 2 sentences") as late:
+        read_english(text, deadline=cast("Deadline", PassingDeadline(4)))
+    assert late.value.read is not None
+    assert [str(fact) for fact in late.value.read.facts] == ["left(fork, cup)"]
+
+
+def test_a_time_limit_before_the_first_fact_keeps_nothing() -> None:
+    with pytest.raises(ScriptTimeError) as late:
+        read_english("Wash your hands. The fork is left of the cup.", deadline=cast("Deadline", PassingDeadline(2)))
+    assert late.value.read is None
+
+
+@pytest.mark.parametrize("text", ["1 2 3 4 5 " * 4000, "(1) " * 10_000, "12. 34. " * 4000])
+def test_numbers_alone_end_soon(text: str) -> None:
+    with processor_time_below(10), pytest.raises(ScriptError):
+        read_english(text)
+
+
+def test_a_text_without_a_full_stop_is_cut() -> None:
+    cut = list(sentences("the cup is on the tray and " * 3000))
+    assert len(cut) > 1 and max(raw.end - raw.start for raw in cut) <= MAX_SENTENCE_LENGTH
 
 
 @pytest.mark.parametrize("text", ["", " \n\t ", "...", "?!"])

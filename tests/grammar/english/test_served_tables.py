@@ -94,7 +94,7 @@ def test_steps_name_what_comes_next(text: str, expected: list[str]) -> None:
         ("Candlesticks are placed behind the bowl.", ["behind(candlesticks, bowl)"]),
     ],
 )  # fmt: skip
-def test_things_are_told_by_use_and_rank(text: str, expected: list[str]) -> None:
+def test_things_are_distinguished_by_use_and_rank(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
 
 

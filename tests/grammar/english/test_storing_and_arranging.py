@@ -137,3 +137,109 @@ def test_words_of_advice_that_state_no_fact(text: str) -> None:
     found = asserted(f"{text} The cup is on the saucer.")
     assert "on(cup, saucer)" in found
     assert not [fact for fact in found if fact.startswith(wrong)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The box is filled with spoons.", ["inside(spoons, box)"]),
+        ("The box is full of spoons.", ["inside(spoons, box)"]),
+        ("The shelf is packed with books.", ["on(books, shelf)"]),
+        ("Store the lids with the pots.", ["near(lids, pots)"]),
+        ("Keep pens with pencils, cups with mugs.", ["near(pens, pencils)", "near(cups, mugs)"]),
+        ("Don't store the lids with the pots.", ["not near(lids, pots)"]),
+        ("Place the fork with the blue mat, the cup with the red one.", ["near(fork, blue_mat)", "near(cup, red_mat)"]),
+        ("The left corner holds a lamp.", ["corner(lamp, 'left')"]),
+        ("Fill in the corners with plants.", ["corner(plants)"]),
+        ("The middle of the tray is occupied by a vase.", ["middle(vase)"]),
+        ("The corner does not hold a lamp.", ["not corner(lamp)"]),
+        ("Align the holes of the lid with the pegs. The cup is on the box.", ["aligned(holes, pegs)", "on(cup, box)"]),
+        ("Align the holes on the legs with the pegs.", ["on(holes, legs)", "aligned(holes, pegs)"]),
+        ("Drop the beam in near the jar.", ["near(beam, jar)"]),
+        ("Place the following items on the box:\n- A cup.\n- A jug.", ["on(cup, box)", "on(jug, box)"]),
+        ("Hide the key under the mat.", ["under(key, mat)"]),
+        ("There is a box where I keep my pens.", ["inside(pens, box)"]),
+        ("Next to the jar is a shelf where the cups and mugs are stored.",
+         ["next_to(shelf, jar)", "on(cups, shelf)", "on(mugs, shelf)"]),
+        ("There is a box where I do not keep my pens. The cup is on the jar.", ["on(cup, jar)"]),
+        ("I prefer keeping cups and such in the box.", ["inside(cups, box)"]),
+        ("The cabinet holds cups.", ["inside(cups, cabinet)"]),
+        ("To the left as you walk in is the lamp.", ["part(lamp, 'left')"]),
+        ("The lamp hangs a bit over half way up the ladder.", ["on(lamp, ladder)"]),
+        ("With the bench lying on its front edge, attach the legs to the lid.", ["touching(legs, lid)"]),
+        ("The desk stands back-to-back with the bench.", ["touching(desk, bench)"]),
+        ("You want the lamp to be next to the jar.", ["next_to(lamp, jar)"]),
+        ("You do not want the lamp to be next to the jar. The cup is on the box.", ["on(cup, box)"]),
+        ("Next to the jar goes the fork, then the spoon.", ["next_to(fork, jar)", "next_to(spoon, jar)"]),
+    ],
+)  # fmt: skip
+def test_fillings_companions_and_regions(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The cup lies under the ceiling fan/light.", ["under(cup, ceiling_fan)"]),
+        ("The cup stands behind my desk/floor lamp.", ["behind(cup, floor_lamp)"]),
+        ("Rice (grains boiled in broth) and similar foods are placed on the box.", ["on(rice, box)", "on(foods, box)"]),
+        ("Once in the hall, the cup is left of the jug.", ["left(cup, jug)"]),
+        ("Two cups, at ground level, are next to the jug.", ["next_to(cup_1, jug)", "next_to(cup_2, jug)"]),
+        ("The cup is at or near the jug.", ["near(cup, jug)"]),
+        ("There should, however, be a cup on the box.", ["on(cup, box)"]),
+        ("A 24\" x 36\" mat lies on the box.", ["on(mat, box)"]),
+        ("A 3\u2032 by 4\u2032 mat lies on the box.", ["on(mat, box)"]),
+        ("\u2022Put the cup on the box.", ["on(cup, box)"]),
+        ("A small to medium cup stands on the box.", ["on(cup, box)"]),
+        ("The cup is known as a mug and stands on the box.", ["on(cup, box)"]),
+        ("Place the nail 2 in. from the edge of the lid.", ["distance(nail, lid, 'edge', 0.0508 m)"]),
+        ("The hall is open to the stairs. The cup is on the box.", ["on(cup, box)"]),
+        ("As the bowl is on the box, put the cup on the jar.", ["on(bowl, box)", "on(cup, jar)"]),
+    ],
+)  # fmt: skip
+def test_words_beside_the_thing_and_its_place(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The rice bowl is on the box. The bowl of soup is on the jar.", ["on(rice_bowl, box)", "on(bowl, jar)"]),
+        ("Put a dish on the box and pour water into it. Fill the tank with water. Put the cup in the tank.",
+         ["on(dish, box)", "inside(cup, tank)"]),
+        ("The foot pieces are in the box. The large pieces are on the jar.",
+         ["inside(foot_pieces, box)", "on(pieces, jar)"]),
+        ("The white mat is on the box. One cup stands on each mat.", ["on(mat_1, box)", "on(cup, mat_2)"]),
+        ("There are two boxes next to the jar. On the box that holds the tea lies a cup.",
+         ["next_to(box_1, jar)", "next_to(box_2, jar)", "on(cup, box_1)"]),
+        ("Put a cup on the first mat and a jug on the last mat.", ["on(cup, mat_1)", "on(jug, mat_2)"]),
+        ("Put the \u2018letter keys\u2019 in front of the lamp.", ["in_front(letter_keys, lamp)"]),
+    ],
+)  # fmt: skip
+def test_which_vessels_and_pieces_are_others(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "The lid of the jar is red.",
+        "The wand can go anywhere they fit.",
+        "There is little or no dust on the jar.",
+        "On the mat, rather than the fork, put the spoon.",
+        "On the mat, the fork has no business.",
+        "Phones have no place on the mat.",
+        "On the mat few forks lie.",
+    ],
+)
+def test_parts_places_and_denials_that_state_no_fact(text: str) -> None:
+    reading = read_english(f"{text} The cup is in the box.").reading
+    assert reading is not None
+    found = [str(fact.content) for fact in reading.stated if fact.asserted and fact.content.positive]
+    assert [f for f in found if not f.startswith(("inside(cup", "on(spoon", "count("))] == []
+
+
+def test_qualities_that_or_joins_are_not_stated() -> None:
+    reading = read_english("The plastic or rubber feet are in the box.").reading
+    assert reading is not None
+    assert [str(fact.content) for fact in reading.stated] == ["inside(feet, box)"]

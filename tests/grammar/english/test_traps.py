@@ -8,7 +8,7 @@ from deixis.grammar.english.reader import read_english
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_made_traps_are_no_facts_and_made_statements_are(seed: int) -> None:
+def test_generated_traps_state_no_facts_and_statements_do(seed: int) -> None:
     assert [(sentence.text, faults) for sentence in made(1, seed) if (faults := wrong_about(sentence))] == []
 
 

@@ -52,7 +52,7 @@ def test_questions_are_read_with_their_parts(
         ("The fork is left of the plate.", False),
     ],
 )
-def test_questions_are_told_from_statements(text: str, asks: bool) -> None:
+def test_questions_are_distinguished_from_statements(text: str, asks: bool) -> None:
     assert is_question(text) is asks
 
 

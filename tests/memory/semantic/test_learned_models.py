@@ -54,7 +54,7 @@ def test_words_and_sizes_are_replaced_each_by_itself(taught: SemanticMemory) -> 
     assert taught.stats().size_models == 0
 
 
-def test_a_lesson_goes_and_what_stays_is_what_was_told_to_stay(taught: SemanticMemory) -> None:
+def test_forgetting_a_lesson_keeps_the_given_models(taught: SemanticMemory) -> None:
     taught.keep_models({ModelSet.WORDS: list(model_triples(MODEL)), ModelSet.SIZES: SIZE})
     taught.forget("dinner-2", [], {ModelSet.WORDS: list(model_triples(NEWER))})
     assert words(taught) == (NEWER,)

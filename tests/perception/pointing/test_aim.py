@@ -40,7 +40,7 @@ def test_the_middle_between_two_near_things_asks_which() -> None:
     assert found.question in ("Which one do you mean: o1 or o2?", "Which one do you mean: o2 or o1?")
 
 
-def test_an_empty_place_is_none_of_the_things() -> None:
+def test_an_empty_place_matches_no_thing() -> None:
     found = pointed_at(straight_at((0.15, 0.6, 0.0)), SCENE)
     assert found.decided is None and found.none > 0.9
     assert "none of them" in str(found.refused)

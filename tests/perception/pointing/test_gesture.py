@@ -64,6 +64,6 @@ def test_speeds_are_those_of_a_straight_path() -> None:
 
 
 @pytest.mark.parametrize("place", [(0.0, float("nan"), 0.0), (0.0, 1e6, 0.0), (0.0, 1.0)])
-def test_a_skeleton_refuses_places_that_are_none(place: tuple[float, ...]) -> None:
+def test_a_skeleton_refuses_invalid_places(place: tuple[float, ...]) -> None:
     with pytest.raises(PointingError, match="'head' must have 3 finite"):
         Skeleton(0.0, {"head": place})  # type: ignore[dict-item]

@@ -60,6 +60,16 @@ def test_moved_thing_keeps_its_id_and_is_followed() -> None:
     assert not now.things[1].moving and now.things[1].since > 1.0 > now.things[0].since
 
 
+@pytest.mark.parametrize("rate", [2.0, 5.0])
+def test_moved_thing_rests_at_low_frame_rates(rate: float) -> None:
+    story = film([PLATE, MUG], [Rest(0.5), Move("mug", 0.1, -0.15), Rest(3.0)])
+    with Tracker(HALF) as tracker:
+        for frame in story.frames(rate, scale=0.4):
+            now = tracker.update(frame.cloud, frame.at)
+    assert [thing.moving for thing in now.things] == [False, False]
+    assert now.things[1].since > 1.0
+
+
 def test_hidden_thing_is_known_for_two_seconds() -> None:
     story = followed([PassOver(0.12, 0.2)], rate=5)
     states = [{thing.id: thing.state for thing in now.things} for _, now in story]
@@ -116,7 +126,7 @@ def test_cloud_without_a_table_is_reported_until_one_comes() -> None:
         assert [thing.id for thing in now.things] == ["t1", "t2"] and not now.notes
 
 
-def test_table_laid_anew_between_two_frames_is_looked_at_again() -> None:
+def test_table_laid_again_between_two_frames_is_detected_again() -> None:
     actions = (TakeAway("plate"), TakeAway("mug"), Bring(replace(PLATE, name="other", x=0.1)), Bring(BOWL))
     story = film([PLATE, MUG], [Rest(0.2), *actions, Rest(0.2)])
     first, second = story.frames(1 / story.seconds, scale=0.4)

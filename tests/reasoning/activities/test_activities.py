@@ -193,7 +193,7 @@ def test_an_activity_without_a_name_is_refused(tmp_path: Path) -> None:
     assert not (tmp_path / "known.json").exists()
 
 
-def test_an_empty_sequence_is_none_of_the_activities() -> None:
+def test_an_empty_sequence_matches_no_activity() -> None:
     dinner = Activity.learned("dinner", [laid("plate fork")])
     assert recognise_activity([dinner], laid("")).name is None
 
@@ -201,7 +201,7 @@ def test_an_empty_sequence_is_none_of_the_activities() -> None:
 @pytest.mark.parametrize(
     "box", ["[" * 50_000, f"[{'9' * 400}, 1, 2, 3]", "[1e400, 1, 2, 3]", '{"a": 1}', "null", "[true]", "x"]
 )
-def test_a_place_that_is_not_a_box_is_no_place(box: str) -> None:
+def test_a_place_that_is_not_a_box_is_refused(box: str) -> None:
     assert box_of(Statement("cup", "at", box)) is None
     assert StepSequence.of([Fluent("f1", Statement("cup", "at", box), Bounds(1, 1))]).laying[0].place is None
 

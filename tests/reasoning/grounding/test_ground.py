@@ -271,7 +271,7 @@ def test_the_names_of_the_pairs_are_worked_out_once(
     assert counts == [len(scene.objects)]
 
 
-def test_the_notes_of_the_caller_come_first_and_the_time_is_told(graph_of: MakeGraph, full_script: list[str]) -> None:
+def test_notes_of_the_caller_come_first_and_the_time_is_stated(graph_of: MakeGraph, full_script: list[str]) -> None:
     started = time.perf_counter()
     question = evidence(graph_of(*full_script), formal_setting())
     found = ground(question, engine_named("exact"), notes=("as seen from the window",))

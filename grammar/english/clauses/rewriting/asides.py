@@ -393,6 +393,9 @@ def _examples(chunks: list[Chunk], at: int) -> Run | None:
     if not before.value.plural and not (word == "such as" and (apart or including)):
         return None
     general = last_word(before.value.head) in GENERAL
+    named = type_at(chunks, at - 2) in COMMANDS | {"AND", "COMMA"} and type_at(chunks, 0) in COMMANDS
+    bare = type_at(chunks, first + 1) == "NP" and chunks[first + 1].value.determiner is None
+    general = general or (named and bare and before.value.determiner is None and type_at(chunks, first + 2) == "PREP")
     if word != "such as" and not (word == "like" and (general or (apart and type_at(chunks, 0) in COMMANDS))):
         return None
     end, last = first + 1, 0
@@ -517,22 +520,34 @@ def _agent(chunks: list[Chunk], at: int) -> Run | None:
     return end, None
 
 
+def _base(group: VerbGroup) -> str:
+    """Return the plain form of a participle, also of a verb that the tables lack: *refer* of *referred*."""
+    return group.lemma.removesuffix("red") if group.lemma.endswith("rred") else group.lemma.removesuffix("ed")
+
+
 def _naming(chunks: list[Chunk], at: int) -> Run | None:
-    """Find another name of a thing: *a large plate, known as a charger, …*, *a plate called a side plate …*."""
+    """Find another name of a thing: *a large plate, known as a charger, …*, *a plate called a side plate …*.
+
+    *It is known as a charger and* goes before another verb.
+    """
     apart = type_at(chunks, at) == "COMMA"
-    first = at + apart
-    if type_at(chunks, at - 1) != "NP" or type_at(chunks, first) not in ("PART", "TPART"):
+    said = type_at(chunks, at) == "BE"
+    first = at + (apart or said)
+    follows = type_at(chunks, at - 1) == "NP" or (said and type_at(chunks, at - 1) == "COMMA")
+    if not follows or type_at(chunks, first) not in ("PART", "TPART"):
         return None
     group = chunks[first].value
-    if not isinstance(group, VerbGroup) or group.lemma not in _NAMING or group.form == "ing":
+    if not isinstance(group, VerbGroup) or _base(group) not in _NAMING or group.form == "ing":
         return None
     named = first + 1
     while type_at(chunks, named) in ("PREP", "UNKNOWN", "ADVERB") and named < first + 3:
         named += 1
-    if type_at(chunks, named) != "NP" or (named > first + 1) != (group.lemma in ("know", "refer")):
+    if type_at(chunks, named) != "NP" or (named > first + 1) != (_base(group) in ("know", "refer")):
+        return None
+    if said and not (type_at(chunks, named + 1) == "AND" and type_at(chunks, named + 2) in FINITE):
         return None
     leave_out(chunks[first : named + 1], "another name of a thing does not say where it is")
-    return named + 1 + (apart and type_at(chunks, named + 1) == "COMMA"), None
+    return named + 1 + said + (apart and type_at(chunks, named + 1) == "COMMA"), None
 
 
 def _omission(chunks: list[Chunk], at: int) -> Run | None:

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.rewriting.editing import (
     BREAKS,
     ENDS,
     HANDS,
     Run,
     cut,
+    emptied,
     end_before,
     leave_out,
+    put_in,
     type_at,
     without,
     word_of,
 )
-from deixis.grammar.english.vocabulary.nouns import last_word
+from deixis.grammar.english.vocabulary.nouns import PARTS, SUBSTANCES, last_word
+from deixis.grammar.english.vocabulary.relation_words import Preposition
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import NAMED_LIKE_THINGS, PLACING_VERBS, PUT_VERBS, verb_forms
 
@@ -27,6 +30,9 @@ _UNSURE = frozenset({"can", "could", "may", "might", "would"})
 _UNCONDITIONAL = frozenset({"before", "after", "because", "as", "so"})
 """Conjunctions of clauses that are not conditions."""
 
+_TIMES = word_set("before after while")
+"""Conjunctions whose participle has the subject of the main clause, or the reader."""
+
 _SERVING = word_set(
     "ensure allow help save keep simplify reduce minimize minimise protect improve free facilitate maximize maximise"
 )
@@ -34,6 +40,12 @@ _SERVING = word_set(
 
 _MEANS = (PLACING_VERBS | PUT_VERBS) - word_set("start finish turn top cover fill flank surround dot add press")
 """Verbs of means that say where their object comes to be: *by burying the roots in the soil*."""
+
+_PARTICLES = frozenset({"in", "on", "up", "down", "back", "over", "out"})
+"""Particles of verbs, after which their object or a place follows."""
+
+_GATHERING = word_set("put place store stow stash file group keep")
+"""Verbs after which *with* can be a place: *store the lids with the pots*."""
 
 _GOOD = word_set(
     "good great best better ideal important helpful useful convenient safest easiest key essential perfect"
@@ -62,6 +74,17 @@ def _with_participles_of_commands(chunks: list[Chunk]) -> list[Chunk]:
                 command = replace(chunk, type="PUT", value=replace(group, form="base"))
                 joint = replace(chunks[i - 1], type="CUT")
                 return [*chunks[: i - 1], joint, command, *_with_participles_of_commands(chunks[i + 1 :])]
+    return chunks
+
+
+def _with_participles_of_times(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *after covering the plate, put the lid on it* with a command: the things of the text do not cover it."""
+    for i in range(len(chunks) - 2):
+        group = chunks[i + 1].value
+        timed = chunks[i].type == "SUB" and chunks[i].value in _TIMES and chunks[i + 1].type == "TPART"
+        if timed and isinstance(group, VerbGroup) and group.form == "ing" and chunks[i + 2].type == "NP":
+            places = group.lemma in PLACING_VERBS | PUT_VERBS
+            chunks[i + 1] = replace(chunks[i + 1], type="PUT" if places else "DO", value=replace(group, form="base"))
     return chunks
 
 
@@ -200,8 +223,93 @@ def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
     return chunks
 
 
+def _with_companions_as_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *store the lids with the pots, the cups with the mugs* as commands that put the first near the second.
+
+    A command that puts a thing and names no other place needs *with* for it.
+    """
+    if [type_at(chunks, k) for k in range(3)] != ["PUT", "NP", "WITH"] or chunks[0].value.lemma not in _GATHERING:
+        return chunks
+    pairs, at = [], 1
+    while [type_at(chunks, at + k) for k in range(3)] == ["NP", "WITH", "NP"]:
+        pairs.append(chunks[at : at + 3])
+        at += 4
+        if type_at(chunks, at - 1) in ("CUT", ""):
+            break
+        at += type_at(chunks, at) == "AND"
+    if not pairs or type_at(chunks, at - 1) not in ("CUT", "") or not all(_are_companions(p[0], p[2]) for p in pairs):
+        return chunks
+    found: list[Chunk] = []
+    for thing, joint, other in pairs:
+        command = put_in("PUT", thing)
+        command.value = chunks[0].value
+        near = Relator(Preposition("with", "near"))
+        first = not found
+        found += [chunks[0]] if first else [put_in("CUT", thing), command]
+        found += [thing, replace(joint, type="PREP", value=near), other]
+    return [*found, *chunks[at - 1 :]]
+
+
+def _are_companions(thing: Chunk, other: Chunk) -> bool:
+    """Return True for two things that can be kept together, and not for a thing with what belongs to it."""
+    one, beside = thing.value, other.value
+    known = beside.determiner in ("the", "this", "that", "these", "those") or beside.owner is not None
+    both = beside.plural and one.plural and beside.determiner is None
+    named = bool(beside.head) or beside.pronoun == "one"
+    return named and (known or both) and not beside.members and last_word(beside.head) not in PARTS | SUBSTANCES | HANDS
+
+
+def _with_aligned_parts(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *align the holes on the legs with the pegs* with a comma before *in line with*, which is of the holes."""
+    for i, chunk in enumerate(chunks[:-4]):
+        if chunk.type != "PUT" or chunk.value.lemma != "align" or type_at(chunks, i + 2) != "PREP":
+            continue
+        with_ = next((k for k in range(i + 3, end_before(chunks, i, BREAKS)) if chunks[k].type == "WITH"), 0)
+        if with_ and type_at(chunks, with_ + 1) == "NP":
+            beside = replace(chunks[with_], type="PREP", value=Relator(Preposition("in line with", "aligned")))
+            return [*chunks[:with_], put_in("COMMA", chunks[with_]), beside, *chunks[with_ + 1 :]]
+    return chunks
+
+
+def _particle(chunks: list[Chunk], at: int) -> Run | None:
+    """Find a particle of a verb before a place: *drop it in near the middle*, *put in two cups next to the jar*."""
+    types = [type_at(chunks, at + k) for k in range(-2, 4)]
+    if types[2] == "UNKNOWN" and chunks[at].value in _PARTICLES:
+        moved = types[0] in ("PUT", "TPART", "TVERB") and types[1] == "NP" and types[3] in ("PREP", "ADV")
+        return (at + 1, None) if moved else None
+    if types[1:5] != ["PUT", "PREP", "NP", "PREP"] or word_of(chunks[at]) != "in":
+        return None
+    return (at + 1, None) if (chunks[at + 1].value.count or 1) > 1 else None
+
+
+def _origin(chunks: list[Chunk], at: int) -> Run | None:
+    """Find where a thing was before it is moved: *move the cup from the mat to the tray*."""
+    types = [type_at(chunks, at + k) for k in range(-2, 3)]
+    if types != ["PUT", "NP", "PREP", "NP", "PREP"] or word_of(chunks[at]) != "from":
+        return None
+    if word_of(chunks[at + 2]) not in ("to", "into", "onto"):
+        return None
+    leave_out(chunks[at : at + 2], "where a thing was before does not say where it is")
+    return at + 2, None
+
+
+def _with_wishes_as_statements(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *you want the lamp to be on the left* as *the lamp is on the left*: what the reader wants is advice."""
+    if any(chunk.type == "SUB" for chunk in chunks):
+        return chunks
+    for i in range(len(chunks) - 4):
+        types = [type_at(chunks, i + k) for k in range(4)]
+        wished = types == ["CUT", "NP", "UNKNOWN", "BE"] and chunks[i].end - chunks[i].start > 1
+        if wished and chunks[i + 2].value == "to" and type_at(chunks, i + 4) in ("PREP", "ADV"):
+            being = replace(chunks[i + 3], value=VerbGroup("be", "be", "finite"))
+            return [*chunks[: i + 2], emptied(chunks[i + 2]), being, *chunks[i + 4 :]]
+    return chunks
+
+
 REWRITES = (
+    without(_particle), without(_origin), _with_wishes_as_statements, _with_companions_as_places, _with_aligned_parts,
     _with_denied_commands, _with_objects_after_places, without(_accompaniment), _with_participles_of_commands,
-    without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands, _with_placements_as_commands,
+    _with_participles_of_times, without(_second_verb), _with_verbs_of_one_person, _with_means_as_commands,
+    _with_placements_as_commands,
 )  # fmt: skip
 """Rewritings of commands, in their order."""

@@ -158,12 +158,19 @@ def _with_shared_references(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _without_order_in_lists(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *on the left there is a cup, then a jug* without *then*, which is the order of the list."""
+    """Return *on the left there is a cup, then a jug* without *then*, which is the order of the list.
+
+    After an inversion, *then* joins two subjects: *next to it lies a fork, then a spoon*.
+    """
     for i, chunk in enumerate(chunks):
         if chunk.type != "THEN" or type_at(chunks, i - 1) not in ("AND", "COMMA") or type_at(chunks, i + 1) != "NP":
             continue
         listed = [c.type for c in chunks[i + 2 :] if c.type not in ("COMMA", "AND", "THEN", "NP", "CUT")]
-        verb = max((k for k in range(i) if chunks[k].type in ("TVERB", "BE")), default=i)
+        verbs = [k for k in range(i) if chunks[k].type in FINITE]
+        inverted = bool(verbs) and [type_at(chunks, k) for k in (0, verbs[-1], verbs[-1] + 1)] == ["PREP", "VERB", "NP"]
+        if inverted and verbs[-1] + 3 == i and not listed:
+            return [*chunks[: i - 1], replace(chunks[i], type="AND"), *chunks[i + 1 :]]
+        verb = max((k for k in verbs if chunks[k].type in ("TVERB", "BE")), default=i)
         begins = [k + 1 for k in range(verb, i) if chunks[k].type in ("TVERB", "BE", "COMMA", "AND", "THEN")]
         if not listed and begins and all(type_at(chunks, k) in ("NP", "WITH", "AND", "THEN") for k in begins):
             return _without_order_in_lists([*chunks[:i], *chunks[i + 1 :]])

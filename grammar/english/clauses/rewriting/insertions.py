@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.clauses.rewriting.editing import (
     ENDS,
@@ -72,6 +74,10 @@ def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             leave_out(inside, "how a thing is meanwhile is not where it is")
             i = (closing or i) + 1  # 'place the sofa (cushions removed) in the truck'
             continue
+        if follows_noun and _is_definition(inside):
+            leave_out(inside, "this says what the thing before is, not where it is")
+            i = (closing or i) + 1
+            continue
         if (
             follows_noun
             and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART")
@@ -102,6 +108,34 @@ def _is_conditional(inside: list[Chunk]) -> bool:
     if types[0] == "SUB":
         limited = "COMMA" in types and not FINITE.isdisjoint(types[types.index("COMMA") :])
     return limited and types[0] in ("SUB", "AND", "OR", "BUT")
+
+
+def _is_definition(inside: list[Chunk]) -> bool:
+    """Return True for what a thing is made of or how it is made: *(rice boiled in broth)*, *(pickled plums)*."""
+    things = [i for i, chunk in enumerate(inside[:2]) if chunk.type == "NP"]
+    made = [chunk.value for chunk in inside[:2] if chunk.type in ("PART", "TPART")]
+    if len(things) != 1 or not made or not isinstance(made[0], VerbGroup):
+        return False
+    phrase = inside[things[0]].value
+    return made[0].kind in ("other", "unknown") and phrase.determiner in (None, "a", "an") and phrase.owner is None
+
+
+def _without_second_names(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out one of two names of one thing with a slash between them: *the fan/light*, *my cutting/work table*."""
+    for i in range(1, len(chunks) - 1):
+        first, slash, second = chunks[i - 1 : i + 2]
+        joined = slash.type == "OR" and first.span[1] == slash.span[0] == slash.span[1] - 1 == second.span[0] - 1
+        if not joined or first.type != "NP" or second.type != "NP" or slash.value is not None:
+            continue
+        one, other = first.value, second.value
+        single = bool(one.head and other.head) and not (one.plural or other.plural or one.members or other.members)
+        named = single and (one.determiner in ("the", "a", "an") or one.owner is not None) and other.determiner is None
+        if named and other.owner is None:
+            longer = len(other.head.split()) > len(one.head.split())  # 'a coffee/side table'
+            kept = replace(one, head=other.head, known=other.known) if longer else one
+            first = Chunk("NP", first.start, second.end, kept, (first.span[0], second.span[1]))
+            return _without_second_names([*chunks[: i - 1], first, *chunks[i + 2 :]])
+    return chunks
 
 
 def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
@@ -176,13 +210,17 @@ def _is_exclamation(chunk: Chunk) -> bool:
 
 
 def _without_times(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out the time at the beginning of a sentence: *Before the run, check …*, *Once set, …*."""
+    """Leave out the time at the beginning of a sentence: *Before the run, …*, *Once set, …*, *Once in the hall, …*."""
     start = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
     if [type_at(chunks, start), type_at(chunks, start + 2)] == ["SUB", "COMMA"] and chunks[start].value == "once":
         done = chunks[start + 1]
         bare = done.type in ("ADJP", "PART") or (done.type == "NP" and done.end == done.start + 1)
         if bare:
             return [*chunks[:start], *(emptied(c) for c in chunks[start : start + 3]), *chunks[start + 3 :]]
+    if [type_at(chunks, start + k) for k in range(4)] == ["SUB", "PREP", "NP", "COMMA"] and chunks[
+        start
+    ].value == "once":
+        return [*chunks[:start], *(emptied(c) for c in chunks[start : start + 4]), *chunks[start + 4 :]]
     types = [type_at(chunks, start + k) for k in range(4)]
     if types[0] == "SUB" and types[2:] == ["COMMA", "PUT"] and chunks[start].value in ("when", "once"):
         done = chunks[start + 1]
@@ -243,7 +281,7 @@ def _without_insertions_between_dashes(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes, _without_openings,
-    _without_times,
+    _without_second_names, _without_vocatives, _without_adverbs_apart, _without_insertions_between_dashes,
+    _without_openings, _without_times,
 )  # fmt: skip
 """Rewritings that take out what stands apart, in their order."""

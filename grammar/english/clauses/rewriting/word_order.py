@@ -4,10 +4,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.places import is_place
-from deixis.grammar.english.clauses.rewriting.editing import ENDS, PREDICATES, Run, end_before, put_in, type_at, without
+from deixis.grammar.english.clauses.rewriting.editing import (
+    BREAKS,
+    ENDS,
+    PREDICATES,
+    Run,
+    emptied,
+    end_before,
+    put_in,
+    type_at,
+    without,
+    word_of,
+)
 from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.relation_words import Preposition
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 
 _FOUND_OR_PUT = frozenset(
@@ -36,6 +49,21 @@ _FOUND_OR_PUT = frozenset(
     }
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
+
+_REGIONS = frozenset({"corner", "middle", "centre", "center", "side"})
+"""Nouns of regions, in or on which things are."""
+
+_ORDERS = frozenset({"order", "sequence", "arrangement", "line-up"})
+"""Nouns of the way in which things follow one another."""
+
+_HOLDING = frozenset({"have", "hold", "contain", "display", "feature", "house"})
+"""Verbs of what is in a region."""
+
+_FILLING = frozenset({"fill", "occupy", "take", "decorate"})
+"""Participles of what is in a region."""
+
+_STORING = frozenset({"keep", "store", "put", "hang", "stow", "stash", "leave", "hold"})
+"""Verbs of what is kept in the thing before *where*."""
 
 _PLACEMENTS = frozenset({"placement", "position", "location"})
 """Nouns for the place of a thing, of which a place says where the thing is."""
@@ -193,6 +221,39 @@ def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_places_where(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *there is a box where I keep my pens* with *the pens are in the box* as a clause of its own."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "REL" or chunk.value != "where":
+            continue
+        end = end_before(chunks, i, BREAKS)
+        clause = [c for c in chunks[i + 1 : end] if c.type != "ADVERB"]
+        types = [c.type for c in clause]
+        verb = next((k for k, c in enumerate(clause) if c.type in FINITE), 0)
+        group = clause[verb].value if clause else None
+        if not verb or not isinstance(group, VerbGroup) or group.past or not group.positive:
+            continue
+        by_person = types[:2] == ["NP", "TVERB"] and clause[0].value.pronoun in ("me", "we", "you")
+        things = clause[2:] if by_person and group.lemma in _STORING else []
+        stored = types[verb:] == ["BE", "PART"] and clause[-1].value.lemma in _STORING
+        things = clause[:verb] if stored else things
+        holder = next((c for c in reversed(chunks[:i]) if c.type == "NP" and _holds(c.value)), None)
+        if holder is None or not things or {c.type for c in things} - {"NP", "AND"} or things[-1].type != "NP":
+            continue
+        inner = last_word(holder.value.head) not in SURFACES or last_word(holder.value.head) == "cabinet"
+        place = Preposition("in", "inside") if inner else Preposition("on", "on")
+        named = NounPhrase(chunk.span, holder.value.head, "the", plural=holder.value.plural)
+        span = (chunk.span[0], chunk.span[0])
+        being = Chunk("BE", i, i, VerbGroup("be", "be", "finite"), span)
+        where = [Chunk("PREP", i, i, Relator(place), span), Chunk("NP", chunk.start, chunk.end, named, chunk.span)]
+        return [*chunks[:i], Chunk("CUT", i, i, None, span), *things, being, *where, *chunks[end:]]
+    return chunks
+
+
+def _holds(phrase: NounPhrase) -> bool:
+    return last_word(phrase.head) in VESSELS | HOLDERS | SURFACES
+
+
 def _names_thing(phrase: NounPhrase) -> bool:
     """Return True for a thing and not for its place: *a drawer at the front, in which …*."""
     return bool(phrase.head) and not is_place(phrase)
@@ -239,6 +300,42 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_objects_first(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the tin with the buttons I keep at its left* as *the tin with the buttons is at its left*."""
+    for i in range(len(chunks) - 4):
+        if type_at(chunks, i - 1) not in ENDS or [type_at(chunks, i + k) for k in range(3)] != ["NP", "WITH", "NP"]:
+            continue
+        person, verb = i + 3, i + 4
+        placed = [type_at(chunks, person), type_at(chunks, verb)] in (["NP", "VERB"], ["NP", "TVERB"])
+        placed = placed and chunks[person].value.pronoun in ("me", "we") and not chunks[person].value.head
+        if not placed or chunks[verb].value.lemma not in _FOUND_OR_PUT or type_at(chunks, verb + 1) not in PREDICATES:
+            continue
+        if type_at(chunks, end_before(chunks, verb + 1, FINITE | BREAKS)) in FINITE:
+            continue  # 'the tin with the buttons I keep in it is red'
+        being = replace(chunks[verb].value, lemma="be", kind="be")
+        return [
+            *chunks[:person],
+            emptied(chunks[person]),
+            replace(chunks[verb], type="BE", value=being),
+            *chunks[verb + 1 :],
+        ]
+    return chunks
+
+
+def _with_orders(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the order from left to right is fork, plate, knife* as *from left to right: fork, plate, knife*."""
+    for i, chunk in enumerate(chunks[:-3]):
+        if chunk.type != "NP" or chunk.value.head not in _ORDERS or type_at(chunks, i - 1) not in ENDS | {"COMMA"}:
+            continue
+        after = [type_at(chunks, i + k) for k in (1, 2, 3)] == ["ADV", "BE", "NP"]
+        before = [type_at(chunks, i + k) for k in (-2, -1, 1, 2)] == ["ADV", "COMMA", "BE", "NP"]
+        way = chunks[i + 1 if after else i - 2] if after or before else None
+        if way is not None and way.value.preposition.relation == "row":
+            verb = i + 2 if after else i + 1
+            return [*chunks[: i if after else i - 2], way, put_in("COLON", chunks[verb]), *chunks[verb + 1 :]]
+    return chunks
+
+
 def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
     found: list[Chunk] = []
@@ -270,9 +367,48 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the corner of the tray holds a lamp*, *fill the corner with …* as *a lamp is in the corner of the tray*.
+
+    A region is where a thing is, and has nothing itself.
+    """
+    for i, chunk in enumerate(chunks):
+        if (
+            chunk.type != "NP"
+            or chunk.value.head not in _REGIONS
+            or type_at(chunks, i - 1) not in ENDS | {"AND", "PUT"}
+        ):
+            continue
+        verb = i + 1 + 2 * ([type_at(chunks, i + 1), type_at(chunks, i + 2)] == ["OF", "NP"])
+        if chunk.value.head == "side" and verb > i + 1:
+            continue  # 'the left side of the jar has a label'
+        group = chunks[verb].value if type_at(chunks, verb) in FINITE else None
+        first, being = verb + 1, None
+        if type_at(chunks, i - 1) == "PUT" and chunks[i - 1].value.lemma == "fill" and type_at(chunks, verb) == "WITH":
+            being = replace(chunks[i - 1], value=replace(chunks[i - 1].value, lemma="place", kind="posture"))
+        elif isinstance(group, VerbGroup) and type_at(chunks, verb) == "TVERB" and group.lemma in _HOLDING:
+            being = replace(chunks[verb], type="BE", value=replace(group, lemma="be", kind="be"))
+        elif isinstance(group, VerbGroup) and type_at(chunks, verb) == "BE":
+            done = type_at(chunks, first) == "PART" and type_at(chunks, first + 1) in ("PREP", "WITH")
+            done = done and word_of(chunks[first + 1]) in ("by", "with") and chunks[first].value.lemma in _FILLING
+            first += 2 if done else type_at(chunks, first) == "WITH"
+            being = chunks[verb] if first > verb + 1 else None
+        end = end_before(chunks, first, BREAKS)
+        things = chunks[first:end]
+        if being is None or not things or {c.type for c in things} - {"NP", "AND"} or things[0].type != "NP":
+            continue
+        inner = Relator(Preposition(*("on", "on") if chunk.value.head == "side" else ("in", "inside")))
+        place = [Chunk("PREP", chunk.start, chunk.start, inner, (chunk.span[0], chunk.span[0])), *chunks[i:verb]]
+        if being.type == "PUT":
+            return [*chunks[: i - 1], being, *things, *place, *chunks[end:]]
+        return [*chunks[:i], *things, being, *place, *chunks[end:]]
+    return chunks
+
+
 REWRITES = (
-    _with_placed_subjects, _with_verbs_after_places, _with_participles_of_posture, _without_resumed_subjects,
-    _with_existential_have, _with_parts_after_verbs, _with_relative_places, _with_objects_after_verbs,
-    _with_contact_clauses, without(_stranded), _with_places_before_verbs,
+    _with_orders, _with_filled_regions, _with_places_where, _with_placed_subjects, _with_verbs_after_places,
+    _with_participles_of_posture, _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs,
+    _with_relative_places, _with_objects_after_verbs, _with_objects_first, _with_contact_clauses, without(_stranded),
+    _with_places_before_verbs,
 )  # fmt: skip
 """Rewritings that put clauses into plain order, one after the other."""

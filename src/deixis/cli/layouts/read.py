@@ -28,11 +28,19 @@ def read(
     as_json: AsJson = False,
 ) -> None:
     """Print each sentence of an English text with its facts and a paraphrase."""
+    from deixis.grammar.errors import ScriptTimeError
     from deixis.report.layouts.read import reading_lines
+    from deixis.workflows.layouts.read_english import ReadText
     from deixis.workflows.layouts.read_english import read as read_text
 
+    late: ScriptTimeError | None = None
     with time_bar("reading", time_limit, source=text):
-        found = read_text(text, strict=strict, time_limit=time_limit)
+        try:
+            found = read_text(text, strict=strict, time_limit=time_limit)
+        except ScriptTimeError as error:
+            if error.read is None or error.read.reading is None or strict:
+                raise
+            late, found = error, ReadText(error.read, error.read.reading)
     if as_json or format is ReadFormat.JSON:
         print_json(found.to_dict())
     elif format is ReadFormat.LAYOUT:
@@ -41,3 +49,5 @@ def read(
         sys.stdout.write(format_script(found.script))
     else:
         print_lines(reading_lines(found.script))
+    if late is not None:
+        raise late

@@ -17,7 +17,8 @@ import numpy as np
 from deixis.experiments.apprentice.run import ApprenticePlan, looked_at, teach
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
-from deixis.plots.figure import INK, QUIET, Names, new_figure, require_picture, save
+from deixis.plots.figure import BELONGS, INK, QUIET, WRONG, new_figure, require_picture, save
+from deixis.plots.names import write_names
 from deixis.robot.looking import Fault
 from deixis.robot.robot import Robot
 
@@ -27,16 +28,12 @@ STORY_TABLES = 4
 MAX_POINTS = 20_000
 """Number of points of a cloud that a frame shows."""
 
-RIGHT, WRONG, WOOD = "#00563f", "#b3261e", "#b9a48c"
-"""Colours of what is known, of what is wrong, and of the table."""
-
-LETTER = (0.0075, 0.018)
-"""Width and height of a letter in metres of the table."""
-
+WOOD = "#e3d9cb"
+"""Colour of the table."""
 
 LEGEND = (
     "Each picture shows the points that the camera saw, from above, with the boxes of the things that were detected. "
-    "Green names are known, red ones are of things that are wrong, and ? marks things that are not known yet."
+    "Blue names are known, orange ones are of things that are wrong, and ? marks things that are not known yet."
 )
 """Explanation of the pictures on the page."""
 
@@ -90,7 +87,7 @@ def write_story(plan: ApprenticePlan, folder: Path) -> tuple[Frame, ...]:
             faults = understood.faults()
             wrong = {thing: fault for fault in faults for thing in fault.things}
             names = {
-                id: ((understood.name(id) or "unknown").replace("_", " "), WRONG if id in wrong else RIGHT)
+                id: ((understood.name(id) or "unknown").replace("_", " "), WRONG if id in wrong else BELONGS)
                 for id in understood.scene.ids
             }
             layout = (understood.layout or "no known layout").replace("_", " ")
@@ -106,7 +103,7 @@ def _teaching(
     for lesson in teach(robot, plan):
         known = robot.lessons[lesson.number]
         taught = {settled.thing: role for role, settled in known.settled.items()}
-        names = {id: (taught[id].replace("_", " "), RIGHT) if id in taught else ("?", INK) for id in known.scene.ids}
+        names = {id: (taught[id].replace("_", " "), BELONGS) if id in taught else ("?", INK) for id in known.scene.ids}
         asked = f", and asks {lesson.questions} time{'s' * (lesson.questions > 1)}" if lesson.questions else ""
         title = lesson.layout.replace("_", " ")
         keep(known.scene, names, f"The teacher describes: {title}. The robot learns {len(taught)} things{asked}.")
@@ -123,25 +120,25 @@ def _draw(scene: Scene, names: Mapping[str, tuple[str, str]], caption: str, path
     """Draw the points of all things from above in their colours, with boxes and names."""
     figure, axes = new_figure(7.0, 5.2)
     axes.set_facecolor(WOOD)
-    text = Names(axes, LETTER, 8)
     for thing in scene.objects:
         if isinstance(thing.cloud, PointCloud):
             step = max(1, len(thing.cloud) * len(scene.objects) // MAX_POINTS)
             points = thing.cloud.points[::step]
             shades = np.full(len(points), 0.5) if thing.cloud.colours is None else thing.cloud.colours[::step] / 255
             axes.scatter(points[:, 0], points[:, 1], c=shades, s=2.5, linewidths=0, rasterized=True)
-    for thing in sorted(scene.objects, key=lambda thing: (-thing.maximum[1], thing.minimum[0])):
-        name, colour = names.get(thing.id, ("", QUIET))
+    for thing in scene.objects:
+        _, colour = names.get(thing.id, ("", QUIET))
         low, high = np.array(thing.minimum[:2]), np.array(thing.maximum[:2])
         corners = np.array([low, (high[0], low[1]), high, (low[0], high[1]), low])
         axes.plot(corners[:, 0], corners[:, 1], color=colour, linewidth=1.6)
-        text.write(name, (low[0] + high[0]) / 2, (high[1] + 0.01, low[1] - 0.01, (low[1] + high[1]) / 2), colour)
     axes.set_aspect("equal")
     axes.set_xticks([])
     axes.set_yticks([])
     axes.set_title(caption, fontsize=8, loc="left", color=INK, wrap=True)
     for side in axes.spines.values():
         side.set_color(QUIET)
+    named = [replace(thing, label=names[thing.id][0]) for thing in scene.objects if thing.id in names]
+    write_names(figure, axes, named, colours={id: colour for id, (_, colour) in names.items()})
     save(figure, path)
 
 

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from deixis.experiments.open_ended.run import Findings, OpenEnded
 from deixis.perception.recognition.learners.teaching import Course
-from deixis.plots.figure import INK, dress_chart, new_figure, save
+from deixis.plots.figure import INK, dress_chart, line_look, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = ("#1f4e79", "#e0a02c", "#c0392b", "#7f8c8d", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c", "#d46a9f")
 Curve = Callable[[Course], NDArray[np.float64]]
 
 
@@ -78,8 +77,8 @@ def _draw(axes: Axes, one: Findings, title: str, curve: Curve) -> None:
     """Draw the mean curve of every learner."""
     for number, name in enumerate(dict.fromkeys(taught.contestant for taught in one.taught)):
         mean = mean_curve([curve(taught.course) for taught in one.of(name)])
-        across, colour = np.arange(1, len(mean) + 1), COLOURS[number % len(COLOURS)]
-        axes.plot(across, mean, color=colour, linewidth=2.2 if number == 0 else 1.2, label=name)
+        across, width = np.arange(1, len(mean) + 1), 2.2 if number == 0 else 1.2
+        axes.plot(across, mean, linewidth=width, label=name, **line_look(number))
     dress_chart(axes, f"{one.name}: {title}", "question and correction iterations")
 
 

@@ -12,25 +12,18 @@ from deixis.experiments.scoreboard.board import Board, median_seconds
 from deixis.experiments.scoreboard.cases import PHOTOGRAPHS, Group
 from deixis.experiments.scoreboard.contestants import DEFAULT
 from deixis.experiments.scoreboard.run import Scoreboard
-from deixis.plots.figure import INK, QUIET, dress_chart, new_figure, save
+from deixis.plots.figure import INK, LINE_COLOURS, PALETTE, QUIET, dress_chart, line_look, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = (
-    "#1f4e79", "#e0a02c", "#c0392b", "#5a9a5a", "#8e6bbf", "#7f8c8d",
-    "#2a9d9d", "#b5703c", "#d16ba5", "#7fb3d5", "#4d5b1f", "#22313f",
-)  # fmt: skip
 MARKERS = "osD^vPX<>*hd"
 MIN_VALUE_SHOWN = -0.25
 """Minimum relative log-likelihood shown."""
 
-SHADES = ("#1f4e79", "#6d93b8", "#b9cbdc", "#d9d2c3", "#8a7f5c", "#4f7d4c")
 DODGE = 1.008
 """Factor by which lines are set apart, so that their intervals do not overlap."""
-
-NOISES = ("#1f4e79", "#e0a02c", "#c0392b")
 
 
 def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
@@ -102,7 +95,7 @@ def _sizes(axes: Axes, sizes: Sequence[int]) -> None:
 
 
 def _style(number: int) -> dict[str, Any]:
-    style = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)], "markersize": 4.5}
+    style = line_look(number) | {"marker": MARKERS[number % len(MARKERS)], "markersize": 4.5}
     return style | {"linewidth": 2.2 if number == 0 else 1.2, "zorder": 3 if number == 0 else 2}
 
 
@@ -144,7 +137,8 @@ def _times(axes: Axes, board: Board) -> None:
 def _limits(axes: Axes, found: Scoreboard) -> None:
     """Draw the default engine (solid) and the exact limit (dashed) on the largest tables that have one."""
     largest = max((one.setting.objects for one in found.limits), default=0)
-    for off, colour in zip(found.plan.off, NOISES, strict=False):
+    for number, off in enumerate(found.plan.off):
+        colour = LINE_COLOURS[number % len(LINE_COLOURS)]
         some = [one for one in found.limits if one.setting.objects == largest and one.setting.off == off]
         across = [one.setting.facts_each for one in some]
         axes.errorbar(
@@ -170,15 +164,16 @@ def _limits(axes: Axes, found: Scoreboard) -> None:
 def _reliability(axes: Axes, found: Scoreboard) -> None:
     """Draw the share of right matches against their stated probability; the area of a point is its share."""
     axes.plot([0, 1], [0, 1], color=QUIET, linewidth=1, linestyle=":")
-    for (name, one), colour in zip(found.calibrations().items(), (*NOISES, *COLOURS[3:]), strict=False):
+    for number, (name, one) in enumerate(found.calibrations().items()):
+        look = line_look(number)
         bins = [each for each in one.bins if each.count]
         probabilities, right = [each.probability for each in bins], [each.right for each in bins]
-        axes.plot(probabilities, right, color=colour, linewidth=1.2, label=f"{name} ({one.error:.3f})")
+        axes.plot(probabilities, right, linewidth=1.2, label=f"{name} ({one.error:.3f})", **look)
         areas = [4 + 60 * each.count / one.count for each in bins]
-        axes.scatter(probabilities, right, s=areas, color=colour, linewidths=0, alpha=0.8)
+        axes.scatter(probabilities, right, s=areas, color=look["color"], linewidths=0, alpha=0.8)
     title = "expected calibration error"
-    look = {"frameon": False, "labelcolor": INK, "ncols": 2, "columnspacing": 0.8}
-    axes.legend(fontsize=6.5, loc="upper left", title=title, title_fontsize=7, **look)
+    legend = {"frameon": False, "labelcolor": INK, "ncols": 2, "columnspacing": 0.8}
+    axes.legend(fontsize=6.5, loc="upper left", title=title, title_fontsize=7, **legend)
     axes.set_ylabel("share right", color=INK, fontsize=9)
     dress_chart(axes, f"calibration of {DEFAULT}", "probability that the answer gives")
     rows = 1 + (len(found.calibrations()) + 1) // 2  # room for the legend, above the curves
@@ -199,7 +194,7 @@ def _bars(axes: Axes, found: Scoreboard) -> None:
             [mean.mean for mean in means],
             width,
             yerr=np.nan_to_num([mean.half for mean in means]),
-            color=SHADES[number % len(SHADES)],
+            color=PALETTE[number % len(PALETTE)],
             label=one.name,
             error_kw={"elinewidth": 0.8, "capsize": 2, "ecolor": INK},
         )

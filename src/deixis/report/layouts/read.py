@@ -38,14 +38,17 @@ def reading_lines(script: Script) -> list[str]:
         If the script is a layout script, which has no sentences.
     """
     reading = _reading(script)
-    lines = []
+    lines: list[str] = []
+    facts: dict[int, list[StatedFact]] = {}
+    for fact in reading.stated:
+        facts.setdefault(fact.sentence, []).append(fact)
     for number, sentence in enumerate(reading.sentences):
         lines.append(sentence.text)
         if sentence.paraphrase:
             lines.append(f"    = {sentence.paraphrase}")
         elif sentence.question:
             lines.append("    a question: it states no fact")
-        lines += [f"    {_content(fact)}{_marks(fact)}" for fact in reading.stated if fact.sentence == number]
+        lines += [f"    {_content(fact)}{_marks(fact)}" for fact in facts.get(number, ())]
         lines += [doubt(f"    {problem.source}: {problem.message}") for problem in sentence.problems]
     if reading.absent:
         lines.append(f"Not there: {', '.join(reading.absent)}.")

@@ -18,7 +18,7 @@ from deixis.grammar.recall.questions import is_question
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.predicates import ACTS, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
+from deixis.memory.episodes.predicates import ACTS, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS, SAYS
 from deixis.memory.errors import MemoryBusyError, MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
@@ -27,6 +27,7 @@ from deixis.reasoning.errors import NothingFoundError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
+from deixis.robot.kept import KeptElsewhere
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.senses import ENDED, MIN_DURATION, TABLE, WATCHED, named
@@ -35,8 +36,8 @@ from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
 from deixis.workflows.scenes.point import MIN_CONFIDENCE
 
-SAYS, DONE = "says", "done"
-"""Predicates: what the robot says, and that it has dealt with the whole story."""
+DONE = "done"
+"""Predicate: the robot has dealt with the whole story."""
 
 _WRONG = re.compile(
     r"\b(wrong|missing|mistakes?|correct)\b|^\W*(?:is|are)\b.*\blaid\b|\b(?:this|it|everything|all|table) right\b",
@@ -324,6 +325,9 @@ class Learner(Module):
                 lambda: self._say(learned, at, board),
                 lambda: self._ask(at, board),
             )
+            return
+        if isinstance(result, KeptElsewhere):
+            self._say(f"I have noted where things are kept: {result}. That is not on this table.", at, board)
             return
         if left := [one.name for one in result if one.standing is Standing.EXPECTED]:
             self._say(f"I do not see it yet; I expect: {_listed(left)}.", at, board)

@@ -89,6 +89,10 @@ HANDLING_SECONDS = 1.5
 LATE_HAND_SECONDS = 0.3
 """Time in seconds by which the hand may still, or already, be at the thing on the other side of that time."""
 
+REACH_SECONDS = 0.5
+"""Longest time in seconds from the end of a gesture to the time when the hand may be at the thing, for the gesture to
+be the slow end of a reach rather than pointing."""
+
 BRINGING_SCALE = 0.5
 """Time in seconds by which things that come later, or earlier, than another one are e times less likely the announced
 thing."""
@@ -564,7 +568,6 @@ class _Writer:
             if thing.id not in ids.values() and thing.state == "hidden" and not thing.moving
         ]
         self._write_table(replace(found, objects=tuple(things), detection=None), file)
-        self._name_announced()
 
     def _drop_merged(self, situation: Situation) -> None:
         """Delete the places of things that turned out to be parts of others."""
@@ -577,17 +580,26 @@ class _Writer:
         self._outbox.add(*(Delete(part[0]) for part in parts if part is not None), *map(Delete, acts))
 
     def _write_table(self, scene: Scene, file: Path) -> None:
-        """Write the present table as a scene."""
+        """Write the present table as a scene, and name the things that came with it."""
         from deixis.workflows.scenes.perceive import write_scene
 
-        write_scene(scene, file)
-        self._write_view(file.with_suffix("").with_suffix(VIEW_ENDING))
+        self._undone = lambda: self._write_table(scene, file)
+        try:
+            write_scene(scene, file)
+            self._write_view(file.with_suffix("").with_suffix(VIEW_ENDING))
+        except (OSError, DeixisError) as error:
+            full = error if isinstance(error, OSError) else error.__cause__
+            if not isinstance(full, OSError):
+                raise
+            raise MemoryWriteError(f"the scene of the table cannot be written: {full.strerror}") from error
+        self._undone = None
         added = self._add(("table", TABLE, str(file)), self._at, Source(Origin.SEEN, "tracker"))
         if self._table is not None:
             self._outbox.add(self._finished(*self._table, self._at))
         self._table, self._watched = (added.fluent.id, self._at), None
         self._written = _states(self._situation)
         self._outbox.add(added)
+        self._name_announced()
 
     def _write_watched(self, at: float) -> None:
         """Write that the table is still in view and looks as before, at most once in ``WATCH_INTERVAL`` seconds."""
@@ -866,8 +878,8 @@ def named(text: str) -> tuple[str | None, SpokenName | None]:
 
 
 def _overlap(gesture: Gesture, contacts: Iterable[Contact]) -> bool:
-    """Return whether a gesture was held while a hand may have been at a thing."""
-    return any(gesture.start <= each.finish and gesture.finish >= each.start for each in contacts)
+    """Return whether a gesture was held while a hand may have been at a thing, or just before that."""
+    return any(gesture.start <= each.finish and gesture.finish >= each.start - REACH_SECONDS for each in contacts)
 
 
 def _required(frame: NDArray[np.float64] | None) -> NDArray[np.float64]:

@@ -31,6 +31,7 @@ from deixis.memory.episodes.predicates import (
     PUT,
     SAID,
     SAME_AS,
+    SAYS,
     TOOK,
 )
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
@@ -42,7 +43,15 @@ from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.workflows.knowledge.recall_answer import Recall, Recalled
 from deixis.workflows.knowledge.recall_places import RecordedBoxes, RelatedPlace
-from deixis.workflows.knowledge.recall_wording import ACT_DONE, act_words, clock_time, distinct, fact_words, sentence
+from deixis.workflows.knowledge.recall_wording import (
+    ACT_DONE,
+    act_words,
+    clock_time,
+    definite,
+    distinct,
+    fact_words,
+    sentence,
+)
 
 if TYPE_CHECKING:
     from deixis.memory.episodes.search import Episodes
@@ -79,6 +88,22 @@ MAX_UNATTRIBUTED = 3
 PRONOUNS = frozenset({"it", "them", "that", "this"})
 """Nouns that stand for the thing that the question is about."""
 
+ROBOT = "robot"
+"""Name of the robot in questions about what it said."""
+
+ABOUT_PERSONS = ("who_there", "how_many_persons", "whether_present", "where_person")
+"""Kinds of questions about the presence of persons."""
+
+OF_PRESENCE = {
+    "whether_there": "whether_present",
+    "whether_did": "whether_present",
+    "when_there": "who_there",
+    "where": "where_person",
+    "where_was": "where_person",
+    "seen_last": "who_there",
+}
+"""Kind of the question about a person by that of a question about a thing, if the noun is the name of a person."""
+
 PEOPLE = re.compile(r"(?:any|some)(?:one|body)|people|persons?|they")
 """Nouns that stand for any person."""
 
@@ -99,7 +124,8 @@ def recall(
     board
         The blackboard, or a module's board.
     at
-        Time of asking in seconds since the origin of the memory; default: the present.
+        Time of asking in seconds since the origin of the memory; default: the present, or the time of the last thing
+        recorded where that is later, as after a recording that was played faster than it was made.
     ontology
         Words of relations and kinds; default: the shipped ones.
     speaker
@@ -116,9 +142,16 @@ def recall(
         If the question is not understood; the message has wordings that would be.
     """
     ontology = ontology or default_ontology()
-    asked = (datetime.now(UTC) - board.origin).total_seconds() if at is None else at
     read = read_question(question, ontology)
+    asked = _present_time(board) if at is None else at
     return _Remembering(board, asked, ontology, speaker).answer(read)
+
+
+def _present_time(board: Episodes) -> float:
+    """Return the time of the clock in seconds, or the last time that is recorded where that is later."""
+    now = (datetime.now(UTC) - board.origin).total_seconds()
+    times = (time for each in board.holding() for time in (each.start.upper, each.finish.lower))
+    return max(now, max((time for time in times if math.isfinite(time)), default=now))
 
 
 def arrivals(
@@ -326,7 +359,7 @@ class _Remembering:
         search = self.event_search(EVENTS[moment.kind], things, -math.inf, self.asked, Pick.LAST)
         found = search.run(self.board)
         if not found:
-            raise _NotKnownError(f"nothing recorded says that the {moment.value} {_DID[moment.kind]}")
+            raise _NotKnownError(f"nothing recorded says that {definite(moment.value)} {_DID[moment.kind]}")
         ends = [each.finish if search.edge is Edge.FINISHES else each.start for each in found]
         return min(end.lower for end in ends), max(end.upper for end in ends)
 
@@ -338,7 +371,7 @@ class _Remembering:
         acts = FluentSearch(self._persons(asked), frozenset(moment.acts), things, end=self.asked, pick=Pick.LAST)
         found = acts.run(self.board)
         if not found:
-            thing = "it" if moment.value in PRONOUNS else f"the {moment.value}"
+            thing = "it" if moment.value in PRONOUNS else definite(moment.value)
             done, by = ACT_DONE[moment.acts[0]], moment.person or "you"
             raise _NotKnownError(f"nothing recorded says that {thing} was {done} by {by}")
         return min(each.start.lower for each in found), max(each.start.upper for each in found)
@@ -363,7 +396,11 @@ class _Remembering:
         self._meant = things
         if kind in EVENTS or kind in ("when_did", "whether_did", "how_many_did", "how_often"):
             return self._search_of_event(question, things)
-        if kind in ("shown", "how_many_shown", "said", "who", "happened"):
+        if kind == "happened":
+            return self._search_of_happenings(question, things)
+        if kind in ABOUT_PERSONS:
+            return self._search_of_presence(question)
+        if kind in ("shown", "how_many_shown", "said", "who"):
             return self._search_of_statements(question, things)
         if kind in OF_EXPECTED:
             return self._search_of_expected(question)
@@ -458,9 +495,10 @@ class _Remembering:
     def _search_of_statements(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
         start, end, pick = self.window(question.when, event=True)
         pick = Pick(question.order) if question.order else pick
+        if question.kind == "said" and (question.speaker or "").removeprefix("the ") == ROBOT:
+            end = min(end, self.asked - MOMENT)
+            return FluentSearch(None, frozenset({SAYS}), edge=Edge.STARTS, start=start, end=end, pick=pick)
         by = self._persons(question)
-        if question.kind == "happened":
-            return FluentSearch(None, self.places, None, None, None, Edge.STARTS, start, end, pick)
         if question.kind == "said":
             end = min(end, self.asked - MOMENT)  # without the question itself
             statement = FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
@@ -468,6 +506,35 @@ class _Remembering:
             return sentences if sentences.run(self.board) else statement
         origins = frozenset({Origin.SHOWN, Origin.SAID} if question.kind == "who" else {Origin.SHOWN})
         return FluentSearch(things, NAMED, None, origins, by, Edge.STARTS, start, end, pick)
+
+    def _search_of_happenings(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        """Return the search of what came, moved and went, with the acts of the persons who did it."""
+        start, end, pick = self.window(question.when, event=True)
+        pick = Pick(question.order) if question.order else pick
+        places = FluentSearch(things, self.places, edge=Edge.STARTS, start=start, end=end)
+        searches = [places, replace(places, subjects=None, predicates=ACTS, objects=things)]
+        if pick is Pick.ALL:
+            searches.append(self.event_search(Event.GOES, things, start, end))
+        ids = frozenset(each.id for search in searches for each in search.run(self.board))
+        return FluentSearch(edge=Edge.HOLDS if pick is Pick.ALL else Edge.STARTS, pick=pick, ids=ids)
+
+    def _search_of_presence(self, question: RecallQuestion) -> FluentSearch:
+        """Return the search of what shows that persons were there: what they did, pointed at and said."""
+        start, end, pick = self.window(question.when, event=True)
+        end = min(end, self.asked - MOMENT)  # without the question itself
+        shown = ACTS | {SAID, POINTED_AT}
+        pick = Pick(question.order) if question.order else pick
+        return FluentSearch(self._persons(question), shown, edge=Edge.STARTS, start=start, end=end, pick=pick)
+
+    def _of_person(self, question: RecallQuestion) -> RecallQuestion:
+        """Return a question for the presence of a person, if the noun of a question for a thing is a person's name."""
+        kind = OF_PRESENCE.get(question.kind)
+        if kind is None or question.thing is None or question.relation is not None or self._is_known(question.thing):
+            return question
+        if question.thing.lower() not in {name.lower() for name in self._known_persons()}:
+            return question
+        order = "last" if question.kind in ("seen_last", "where", "where_was") else question.order
+        return replace(question, kind=kind, thing=None, speaker=question.thing, event=None, order=order)
 
     def _search_of_words(self, question: RecallQuestion) -> FluentSearch:
         """Return the search of what was said about things: words that name them, else names that they were given."""
@@ -564,26 +631,31 @@ class _Remembering:
 
     def _persons(self, question: RecallQuestion) -> frozenset[str] | None:
         wanted = question.speaker or (self.speaker if question.of_asker else None)
-        kinds = ("shown", "how_many_shown", "said", "said_about", "where_put", *BY_PERSON, *OF_EXPECTED)
+        kinds = ("shown", "how_many_shown", "said", "said_about", "where_put", *ABOUT_PERSONS, *BY_PERSON, *OF_EXPECTED)
         if wanted is None or PEOPLE.fullmatch(wanted.lower()) or question.kind not in kinds:
             return None
-        known = set()
-        for each in self.board.holding():
-            if each.source.origin in (Origin.SAID, Origin.SHOWN):
-                known.add(each.source.by)
-            if each.statement.predicate in ACTS or each.statement.predicate == POINTED_AT:
-                known.add(each.statement.subject)
+        known = self._known_persons()
         called = {wanted.lower(), wanted.lower().removeprefix("the ")}  # 'the teacher' is called 'teacher'
         named = frozenset(name for name in known if name.lower() in called)
         if not named:
             raise _NotKnownError(f"nothing is recorded that '{wanted}' said, showed or did")
         return named
 
+    def _known_persons(self) -> set[str]:
+        """Return the names of all persons who said, showed or did something."""
+        known = set()
+        for each in self.board.holding():
+            if each.source.origin in (Origin.SAID, Origin.SHOWN):
+                known.add(each.source.by)
+            if each.statement.predicate in ACTS or each.statement.predicate == POINTED_AT:
+                known.add(each.statement.subject)
+        return known
+
     # ---- answers
 
     def answer(self, question: RecallQuestion) -> Recall:
         """Return the answer to a question."""
-        search = None
+        search, question = None, self._of_person(question)
         if question.kind == "whether" and question.other in SIDES and not self._is_known(question.other):
             question = replace(
                 question, kind="whether_there", thing=f"{question.other} {question.thing}", relation=None, other=None
@@ -596,11 +668,11 @@ class _Remembering:
                 question, words = replace(question, kind="whether_there"), frozenset({EXPECTED})
                 search = replace(search, subjects=unseen, predicates=words, objects=None)
                 found = search.run(self.board)
-            unknown = self._unattributed(question) if question.kind in BY_PERSON else []
+            unknown = self._unknown_actors(question)
             otherwise = self._otherwise(question, search, unknown) if not found else ()
             if not found and not otherwise:
                 raise _NotKnownError(self._reason(question))
-            if question.order is not None and found:
+            if question.order is not None and found and question.kind in BY_PERSON:
                 unknown = [each for each in unknown if self._is_before(question.order, each, found[0])]
                 if unknown:
                     raise _NotKnownError(self._words_of_unknown(unknown))
@@ -612,9 +684,21 @@ class _Remembering:
             sentences = "; ".join(distinct(fact_words(made, fact) for fact in self._named(otherwise)))
             return replace(made, answer=f"No: {sentences}.")
         told = sentence(made)
-        if unknown and question.kind in ("who_did", "what_did", "how_many_did_by"):
+        if unknown and question.kind in ("who_did", "what_did", "how_many_did_by", "happened"):
             told = f"{told.removesuffix('.')}; {self._words_of_unknown(unknown)}."
         return replace(made, answer=told)
+
+    def _unknown_actors(self, question: RecallQuestion) -> list[tuple[str, EpisodicFluent]]:
+        """Return the changes that a question asks about, of which it is not known who made them.
+
+        For *what happened?*, only a memory with acts of persons says that it does not know one.
+        """
+        if question.kind == "happened" and question.order is None:
+            return self._unattributed(replace(question, acts=(PUT, MOVED, TOOK))) if self._has_acts() else []
+        return self._unattributed(question) if question.kind in BY_PERSON else []
+
+    def _has_acts(self) -> bool:
+        return any(self.board.holding(Pattern(predicate=act)) for act in ACTS)
 
     def _said_instead(self, question: RecallQuestion) -> str:
         """Return what persons said about a thing that no name stands for, as the end of a reason."""
@@ -688,12 +772,12 @@ class _Remembering:
         unknown = self._unattributed(question)
         done = "put" if question.relation is not None else ACT_DONE[question.acts[0]]
         done = done if len(question.acts) < len(ACTS) else "handled"
-        what = "nothing" if question.thing is None else f"the {question.thing}"
+        what = "nothing" if question.thing is None else definite(question.thing)
         persons = self._persons(question)
         by = "" if persons is None else f" by {' or '.join(sorted(persons))}"
         where = ""
         if question.relation is not None and question.other is not None:
-            where = f" {self.ontology.relations[question.relation].phrase} the {question.other}"
+            where = f" {self.ontology.relations[question.relation].phrase} {definite(question.other)}"
         recorded = f"{what} is {'' if question.thing is None else 'not '}recorded as {done}{where}{by}"
         if unknown:
             unseen = self._words_of_unknown(unknown)
@@ -739,10 +823,10 @@ class _Remembering:
             found = gone.run(self.board)
             if found:
                 clock = clock_time(self._moment(found[-1].finish.upper), self._present())
-                return f"the {question.thing} has been gone since {clock}"
-            return f"no place of the {question.thing} is recorded"
+                return f"{definite(question.thing or '')} has been gone since {clock}"
+            return f"no place of {definite(question.thing or '')} is recorded"
         if question.kind == "where" and question.when.kind == "before":
-            return f"no place of the {question.thing} has ended; it is where it was at first"
+            return f"no place of {definite(question.thing or '')} has ended; it is where it was at first"
         what = _UNRECORDED.get(question.kind, "nothing that answers it is recorded")
         return what if question.when.kind in ("unstated", "now") else f"{what} for that time"
 
@@ -775,6 +859,9 @@ _UNRECORDED = {
     "said": "nothing is recorded as said",
     "said_about": "nothing is recorded that was said about it",
     "who": "no person is recorded as having shown or named it",
+    "who_there": "no person was seen or heard",
+    "how_many_persons": "no person was seen or heard",
+    "whether_present": "this person was not seen or heard",
     "present": "nothing is recorded as there",
     "unseen": "nothing that was said to be there is still to be seen",
     "contradicted": "nothing that was said to be there was found missing",

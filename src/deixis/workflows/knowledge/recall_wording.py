@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from datetime import datetime
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ from deixis.memory.episodes.predicates import (
     PUT,
     SAID,
     SAME_AS,
+    SAYS,
     TOOK,
 )
 from deixis.ontology.tbox import default_ontology
@@ -57,19 +59,26 @@ def sentence(found: Recall) -> str:
         return f"{count(len(sentences), 'time')}: {'; '.join(sentences)}."
     if kind in ("how_many", "how_many_did", "how_many_shown"):
         number = len({fact.fluent.statement.subject for fact in facts})
-        return f"{number}: {', '.join(sorted(distinct(f'the {fact.name}' for fact in facts)))}."
+        return f"{number}: {', '.join(sorted(distinct(definite(fact.name) for fact in facts)))}."
+    if kind in ("who_there", "how_many_persons", "whether_present", "where_person"):
+        persons = distinct(fact.fluent.statement.subject for fact in facts)
+        sentences = [_presence(found, [each for each in facts if each.fluent.statement.subject == person])
+                     for person in persons]  # fmt: skip
+        starts = {"how_many_persons": f"{len(persons)}: ", "whether_present": "Yes: "}
+        ending = "; the places of persons are not recorded" if kind == "where_person" else ""
+        return f"{starts.get(kind, '')}{'; '.join(sentences)}{ending}."
     if kind in ("gone", "come", "moved", "when_did", "whether_did", "how_often"):
         words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[question.event or kind]
         edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
-        sentences = distinct(f"the {fact.name} {words} {_time_phrase(found, end.lower, end.upper)}{_source(fact)}"
+        sentences = distinct(f"{definite(fact.name)} {words} {_time_phrase(found, end.lower, end.upper)}{_source(fact)}"
                          for fact, end in zip(facts, edge, strict=True))  # fmt: skip
         if kind == "how_often":
             return f"{count(len(sentences), 'time')}: {'; '.join(sentences)}."
         return f"Yes: {'; '.join(sentences)}." if kind == "whether_did" else _capital("; ".join(sentences))
     if kind in ("shown", "who", "said_about") and all(fact.fluent.statement.predicate in NAMED for fact in facts):
         sentences = distinct(
-            f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "
-            f"{fact.name} {_time_phrase(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
+            f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} "
+            f"{definite(fact.name)} {_time_phrase(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
             for fact in facts
         )
         return _capital("; ".join(sentences))
@@ -93,7 +102,9 @@ def distinct(parts: Iterable[str]) -> list[str]:
 
 
 def _capital(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}" + ("" if text.endswith(("?", "!")) else ".")
+    """Return clauses as a sentence; an id such as ``t3`` at the beginning remains as it is."""
+    first = text[0] if definite(text.split()[0]) == text.split()[0] else text[0].upper()
+    return f"{first}{text[1:]}" + ("" if text.endswith(("?", "!")) else ".")
 
 
 def fact_words(found: Recall, fact: Recalled) -> str:
@@ -121,34 +132,36 @@ def fact_words(found: Recall, fact: Recalled) -> str:
     finish = "" if is_open else f" to {_time(found, ends.lower, ends.upper)}"
     since = f" since {_time(found, begins.lower, begins.upper)}" if start and is_open else ""
     verb = "has been" if since else "is" if is_open or ends.upper > found.asked else "was"
-    if statement.predicate == SAID:
+    if statement.predicate == SAYS:
+        return f"the robot said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
+    elif statement.predicate == SAID:
         return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
     elif statement.predicate == EXPECTED:
         sentence = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
         if not fluent.is_open:
             return f"{sentence}; expected until {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-        return f"{sentence}; the {fact.name} has not been seen yet, probability {fluent.certainty:.2g}"
+        return f"{sentence}; {definite(fact.name)} has not been seen yet, probability {fluent.certainty:.2g}"
     elif statement.predicate in (CONTRADICTED, SAME_AS):
         then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
         if statement.predicate == CONTRADICTED:
-            return f"the {fact.name} was not there {then}: {statement.object}{_source(fact)}"
-        return f"the {fact.name} was seen {then}: {statement.object}{_source(fact)}"
+            return f"{definite(fact.name)} was not there {then}: {statement.object}{_source(fact)}"
+        return f"{definite(fact.name)} was seen {then}: {statement.object}{_source(fact)}"
     elif statement.predicate in ACTS:
         time = _time_phrase(found, fluent.start.lower, fluent.start.upper)
         return f"{fact.name} {act_words(statement.predicate, fact.other or '')} {time}{_source(fact)}"
     elif statement.predicate == AT:
-        text = f"the {fact.name} {verb} there"
+        text = f"{definite(fact.name)} {verb} there"
         if place is not None:
-            where = f"{_phrase(place.relation)} the {place.other}"
+            where = f"{_phrase(place.relation)} {definite(place.other)}"
             if place.start.lower > begins.lower or place.finish.upper < ends.upper:  # the other thing came or went
                 return f"{text}{since or start + finish}, {where}{_source(fact)}"
-            text = f"the {fact.name} {verb} {where}"
+            text = f"{definite(fact.name)} {verb} {where}"
     elif statement.predicate == IS_A:
         text = f"{statement.subject} {verb} a {fact.other}"
     else:
         words = _phrase(statement.predicate)
-        other = "" if fact.other is None else f" the {fact.other}"
-        text = f"the {fact.name} {verb} {words}{other}"
+        other = "" if fact.other is None else f" {definite(fact.other)}"
+        text = f"{definite(fact.name)} {verb} {words}{other}"
     return f"{text}{since or start + finish}{_source(fact)}"
 
 
@@ -167,7 +180,46 @@ def act_words(act: str, thing: str) -> str:
     str
         A predicate such as *moved the fork*.
     """
-    return {PUT: f"put the {thing} down", MOVED: f"moved the {thing}", TOOK: f"took the {thing} away"}[act]
+    the_thing = definite(thing)
+    return {PUT: f"put {the_thing} down", MOVED: f"moved {the_thing}", TOOK: f"took {the_thing} away"}[act]
+
+
+def definite(name: str) -> str:
+    """Return the name of a thing with the definite article; an id such as ``t3`` without one.
+
+    Parameters
+    ----------
+    name
+        Category of a thing in words, or its id.
+
+    Returns
+    -------
+    str
+        The name as it stands in a sentence.
+
+    Examples
+    --------
+    >>> definite("dinner fork"), definite("t3")
+    ('the dinner fork', 't3')
+    """
+    return name if re.fullmatch(r"[A-Za-z]+\d+", name) else f"the {name}"
+
+
+def _presence(found: Recall, facts: list[Recalled]) -> str:
+    """Return when a person was seen or heard: *Ada was seen and heard from 12:00:01 to 12:03:05*."""
+    own = [
+        fact for fact in facts if fact.fluent.statement.predicate == SAID or fact.fluent.source.origin != Origin.SAID
+    ]
+    facts = own or facts  # what others said of a person counts only where nothing else is known
+    acts = [fact.fluent for fact in facts if fact.fluent.statement.predicate != SAID]
+    ways = ["seen"] * any(act.source.origin is not Origin.SAID for act in acts)
+    ways += ["heard"] * (len(acts) < len(facts))
+    seen = " and ".join(ways) or f"there as {acts[0].source.by} said,"
+    first = min((fact.fluent.start for fact in facts), key=lambda start: start.upper)
+    last = max((fact.fluent.start for fact in facts), key=lambda start: start.upper)
+    earliest, latest = (_time(found, each.lower, each.upper) for each in (first, last))
+    time = _time_phrase(found, first.lower, first.upper) if earliest == latest else f"from {earliest} to {latest}"
+    return f"{facts[0].fluent.statement.subject} was {seen} {time}"
 
 
 ACT_DONE = {PUT: "put down", MOVED: "moved", TOOK: "taken away"}

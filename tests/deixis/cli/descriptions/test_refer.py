@@ -64,7 +64,7 @@ def test_a_batch_prints_a_line_for_each_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("from_file", [True, False])
-def test_bytes_that_are_no_text_spoil_one_line(
+def test_bytes_that_are_not_text_spoil_one_line(
     from_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     good = json.dumps({"text": "the sofa\u2028", "scene": str(STUDY)}, ensure_ascii=False).encode()

@@ -10,7 +10,7 @@ from commands import deixis
 EXAMPLES = Path(__file__).parents[4] / "examples"
 
 
-def test_a_layout_is_told_without_what_follows(tmp_path: Path) -> None:
+def test_a_layout_is_described_without_what_follows(tmp_path: Path) -> None:
     layout = tmp_path / "row.layout"
     layout.write_text("left to right: fork, plate, knife\nfork left of knife\n", encoding="utf-8")
     assert deixis("tell", layout)[:2] == (0, "The fork is left of the plate. The plate is left of the knife.\n")
@@ -28,7 +28,7 @@ def test_json_has_the_facts_of_each_sentence(tmp_path: Path) -> None:
     assert [(f["relation"], f["subject"], f["object"]) for f in told["left_out"]] == [("left", "fork", "knife")]
 
 
-def test_a_scene_is_told_from_its_landmark_on() -> None:
+def test_a_scene_is_described_from_its_landmark_on() -> None:
     code, out, _ = deixis("tell", EXAMPLES / "second_table.scene.json")
     assert code == 0
     assert out.startswith("There are two napkins. The first napkin is on the dinner plate.")

@@ -41,7 +41,7 @@ def write(path: Path, text: str) -> Path:
     return path
 
 
-def test_text_says_who_is_who_and_what_is_open() -> None:
+def test_text_names_the_matches_and_what_is_open() -> None:
     code, out, err = deixis("ground", SCRIPT1, SCENE, "--no-sizes")
     assert (code, err) == (0, "")
     rows = [line.split() for line in out.splitlines()]
@@ -190,7 +190,7 @@ def test_a_time_limit_of_zero_gives_an_undecided_answer(tmp_path: Path, engine: 
 
 
 @pytest.mark.parametrize("engine", ["exact", "similarity"])
-def test_a_scene_without_objects_is_a_no(tmp_path: Path, engine: str) -> None:
+def test_a_scene_without_objects_exits_with_1(tmp_path: Path, engine: str) -> None:
     scene = write(tmp_path / "s.scene.json", '{"objects": []}')
     code, out, err = deixis("ground", SCRIPT1, scene, "--json", "--engine", engine)
     data = json.loads(out)
@@ -201,7 +201,7 @@ def test_a_scene_without_objects_is_a_no(tmp_path: Path, engine: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "# only a comment\n", 'layout empty "Empty"\n'])
-def test_a_script_without_objects_is_a_no(tmp_path: Path, text: str) -> None:
+def test_a_script_without_objects_exits_with_1(tmp_path: Path, text: str) -> None:
     code, out, err = deixis("ground", write(tmp_path / "s.layout", text), SCENE, "--plot", tmp_path / "found.svg")
     assert (code, err) == (1, "")
     assert "Facts: 0 stated, 0 satisfied" in out
@@ -255,7 +255,7 @@ def test_things_that_are_likelier_taken_alone_are_reported() -> None:
 
 
 @pytest.mark.parametrize("said", ["car left of bus", "dinner_plate left of bread_plate"])
-def test_a_script_about_nothing_in_the_scene_is_told_so(said: str, tmp_path: Path) -> None:
+def test_a_script_about_nothing_in_the_scene_gets_a_message(said: str, tmp_path: Path) -> None:
     script, scene = tmp_path / "other.layout", tmp_path / "cutlery.scene.json"
     script.write_text(said + "\n", encoding="utf-8")
     boxes = {"s": ([0, 0], [0.03, 0.2]), "k": ([0.1, 0], [0.12, 0.22])}

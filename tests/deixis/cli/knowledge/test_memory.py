@@ -42,7 +42,7 @@ def damage(memory: Path) -> None:
     file.write_bytes(sound[:place] + bytes([sound[place] ^ 1]) + sound[place + 1 :])
 
 
-def test_verify_says_what_it_read_and_what_there_is_none_of(concepts: Path, views: Path) -> None:
+def test_verify_lists_what_it_read_and_what_is_absent(concepts: Path, views: Path) -> None:
     code, out, _ = deixis("memory", "verify", "--memory", concepts)
     assert (code, out) == (0, "All concepts are undamaged.\nThere are no views in this memory.\n")
     code, out, _ = deixis("memory", "verify", "--memory", views)
@@ -103,7 +103,7 @@ def test_recognise_refuses_a_memory_folder_that_does_not_exist(tmp_path: Path) -
     assert not (tmp_path / "typo").exists()
 
 
-def test_nobody_is_asked_about_a_scene_that_cannot_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_question_is_asked_about_a_scene_that_cannot_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO("o1\n"))
     bare = scene(tmp_path / "bare.scene.json", objects=[BOX])
     code, out, err = deixis("ask", "cup", bare, "--memory", tmp_path / "memory")
@@ -122,14 +122,14 @@ def test_a_thing_without_a_cloud_is_not_taken_for_an_answer(tmp_path: Path, monk
     assert (code, "'o2' has no cloud" in out) == (1, True)
 
 
-def test_pixels_are_told_as_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pixels_are_printed_as_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
     image = scene(tmp_path / "image.scene.json", unit="px", objects=[{**BOX, "cloud": "o1.pcd"}])
     out = deixis("ask", "cup", image, "--memory", tmp_path / "memory")[1]
     assert out.splitlines()[0].split() == ["o1", "30", "x", "40", "px", "at", "25,", "40"]
 
 
-def test_what_is_no_archive_makes_no_memory(tmp_path: Path) -> None:
+def test_a_file_that_is_not_an_archive_makes_no_memory(tmp_path: Path) -> None:
     (tmp_path / "views.zip").write_bytes(b"PK\x03\x04 and nothing more")
     code, out, err = deixis("memory", "import", tmp_path / "views.zip", "--memory", tmp_path / "new")
     assert (code, out, len(err.splitlines())) == (2, "", 1)
@@ -142,7 +142,7 @@ def test_category_list_refuses_a_memory_that_does_not_exist(tmp_path: Path) -> N
     assert "there is no memory" in err
 
 
-def test_a_store_that_is_gone_is_told_and_nothing_is_begun_anew(views: Path) -> None:
+def test_a_missing_store_is_reported_and_nothing_is_created(views: Path) -> None:
     shutil.rmtree(views / "perceptual" / "store-2")
     for arguments in (("memory", "verify"), ("category", "list"), ("memory", "stats")):
         code, out, err = deixis(*arguments, "--memory", views)

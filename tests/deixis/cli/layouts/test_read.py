@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from commands import deixis
 
+from deixis.deadline import Deadline
+
 
 @pytest.fixture
 def text(tmp_path: Path) -> Path:
@@ -56,3 +58,14 @@ def test_strict_refuses_what_is_not_understood(tmp_path: Path) -> None:
     file.write_text("The cup is on the mat. The glass is left over.", encoding="utf-8")
     assert deixis("read", file)[0] == 0
     assert deixis("read", file, "--strict")[0] == 2
+
+
+def test_sentences_before_the_time_limit_are_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    questions = iter([False] * 3)
+    monkeypatch.setattr(Deadline, "passed", property(lambda deadline: next(questions, True)))
+    file = tmp_path / "long.txt"
+    file.write_text("The cup is on the mat. The fork is left of the cup. " * 9, encoding="utf-8")
+    code, out, error = deixis("read", file)
+    assert code == 3
+    assert "    on(cup, mat)\n" in out and "left(fork, cup)" not in out
+    assert "time limit reached after 1 sentence;" in error

@@ -144,7 +144,7 @@ def test_explain_as_json() -> None:
     assert "file" not in answer["fact"]
 
 
-def test_what_does_not_follow_is_a_no() -> None:
+def test_a_statement_that_does_not_follow_exits_with_1() -> None:
     code, out, err = deixis("infer", SCRIPT1, "--explain", "left(dessert_fork, soup_spoon)")
     assert (code, err) == (1, "")
     assert out == "left(dessert_fork, soup_spoon) does not follow from the script (--why-not says why).\n"
@@ -189,7 +189,7 @@ def test_why_not_says_what_excludes_a_fact() -> None:
     assert json.loads(out)["excluded_by"]["fact"]["relation"] == "left"
 
 
-def test_why_not_of_what_does_follow_is_a_no() -> None:
+def test_why_not_of_what_does_follow_exits_with_1() -> None:
     code, out, _ = deixis("infer", SCRIPT1, "--why-not", "left(salad_fork, soup_spoon)")
     assert code == 1
     assert out.splitlines()[0] == "left(salad_fork, soup_spoon) does follow:"
@@ -237,7 +237,7 @@ def test_choices_that_are_not_weighed_in_time_leave_it_undecided(tmp_path: Path)
 @pytest.mark.parametrize(
     "text", ["blah", "", "left(a)", "left(a, b); left(b, c)", "not left(a, b)", "a left or right b"]
 )
-def test_an_explain_text_that_is_no_fact_is_bad_input(text: str) -> None:
+def test_an_explain_text_that_is_not_a_fact_is_bad_input(text: str) -> None:
     code, out, err = deixis("infer", SCRIPT1, "--explain", text)
     assert (code, out) == (2, "")
     assert err.startswith("deixis: ")

@@ -106,7 +106,7 @@ def test_a_statement_is_explained_by_axioms_and_steps(table: Path) -> None:
     assert code == 0 and len(found["axioms"]) == 3 and found["steps"][-1]["rule"] == "cax-sco"
 
 
-def test_what_does_not_follow_is_a_no(table: Path) -> None:
+def test_a_statement_that_does_not_follow_exits_with_1(table: Path) -> None:
     code, out, err = deixis("reason", table, CORE, "--explain", ":k dx:left :f")
     assert (code, out) == (1, "") and "does not follow" in err
 
@@ -130,7 +130,7 @@ def test_everything_remembered_is_reasoned_over(tmp_path: Path) -> None:
         (["--memory", "nowhere"], "memory"),
     ],
 )
-def test_bad_input_is_told_and_exits_2(arguments: list[str], told: str, table: Path, tmp_path: Path) -> None:
+def test_bad_input_is_reported_and_exits_2(arguments: list[str], told: str, table: Path, tmp_path: Path) -> None:
     given = [str(table) if a == "TABLE" else str(tmp_path / a) if a == "nowhere" else a for a in arguments]
     code, out, err = deixis("reason", *given)
     assert (code, out) == (2, "")

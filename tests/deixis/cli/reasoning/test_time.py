@@ -78,7 +78,7 @@ def test_answers_as_json() -> None:
     assert why["explanations"][0]["conclusion"] == "before(fetch, pouring)"
 
 
-def test_a_contradiction_is_told_with_its_places_and_exits_1() -> None:
+def test_a_contradiction_is_printed_with_its_places_and_exits_1() -> None:
     file = story([{"a": "a", "allen": ["before"], "b": "b"}, {"a": "b", "allen": ["during", "overlaps"], "b": "a"}])
     code, out, err = deixis("time", file)
     assert (code, err) == (1, "")

@@ -88,7 +88,7 @@ def test_a_memory_is_validated_by_own_shapes(tmp_path: Path) -> None:
         (":S a sh:NodeShape", "shapes.ttl:"),
     ],
 )
-def test_bad_shapes_are_told_and_exit_2(text: str, told: str, data: Path, tmp_path: Path) -> None:
+def test_bad_shapes_are_reported_and_exit_2(text: str, told: str, data: Path, tmp_path: Path) -> None:
     code, out, err = deixis("validate", data, "--shapes", shapes(tmp_path, text))
     assert (code, out) == (2, "")
     assert told in err and "Traceback" not in err

@@ -118,7 +118,7 @@ def test_what_it_refuses(table: Path, options: tuple[str, ...], message: str) ->
     assert err.count("\n") == 1
 
 
-def test_a_file_that_is_no_scene_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_scene_is_refused(tmp_path: Path) -> None:
     code, out, err = deixis("relate", tmp_path / "none.json")
     assert (code, out) == (2, "")
     assert "none.json" in err

@@ -201,7 +201,7 @@ def test_bad_input_has_one_line(tables: Path, tmp_path: Path) -> None:
         assert len(err.splitlines()) == 1, arguments
 
 
-def test_nobody_answers_where_standard_input_is_closed(
+def test_no_answer_comes_where_standard_input_is_closed(
     tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sys.stdin", None)
@@ -315,7 +315,9 @@ def seen(tables: Path) -> tuple[Scene, Scene]:
     return perceive(tables / "7.pcd"), perceive(tables / "20.pcd")
 
 
-def test_which_table_and_which_way_is_up_can_be_told(tables: Path, seen: tuple[Scene, Scene], tmp_path: Path) -> None:
+def test_the_table_and_the_upward_direction_can_be_stated(
+    tables: Path, seen: tuple[Scene, Scene], tmp_path: Path
+) -> None:
     scene, before = tables / "7.scene.json", (tables / "7.scene.json").read_bytes()
     code, out, _ = deixis("perceive", tables / "7.pcd", "--table", "2", "-o", scene)
     assert code == 1 and out.startswith("Nothing was found.\nNote: there is no table 2")
@@ -405,7 +407,7 @@ def test_a_memory_that_is_not_there_is_not_called_whole(tmp_path: Path) -> None:
     assert not (tmp_path / "nowhere").exists()
 
 
-def test_what_is_no_memory_is_told_by_every_command(tables: Path, tmp_path: Path) -> None:
+def test_every_command_reports_a_folder_without_a_memory(tables: Path, tmp_path: Path) -> None:
     scene, file, folder = tables / "7.scene.json", tmp_path / "file", tmp_path / "folder"
     file.write_text("dear\n")
     folder.mkdir()
@@ -479,7 +481,7 @@ def test_a_viewpoint_that_no_scene_can_have_is_refused(tables: Path, viewpoint: 
     assert "`viewpoint` must be a word" in err
 
 
-def test_names_that_go_nowhere_are_told(tables: Path, tmp_path: Path) -> None:
+def test_names_that_go_nowhere_are_reported(tables: Path, tmp_path: Path) -> None:
     memory = ("--memory", tmp_path / "memory")
     deixis("teach", tables / "7.scene.json", "o1", "Gäbel 🍴", *memory)
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"Gäbel_🍴": 1}
@@ -498,9 +500,7 @@ def test_names_that_go_nowhere_are_told(tables: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("word", "message"), [("\x1b[31mred", "control characters"), ("Unknown", "choose another word")]
 )
-def test_a_word_that_could_not_be_said_of_a_thing_is_not_taught(
-    tables: Path, tmp_path: Path, word: str, message: str
-) -> None:
+def test_a_word_that_does_not_fit_a_thing_is_not_taught(tables: Path, tmp_path: Path, word: str, message: str) -> None:
     scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
     for arguments in (("teach", scene, "o1", word), ("ask", word, scene)):
         code, out, err = deixis(*arguments, *memory)

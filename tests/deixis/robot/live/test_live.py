@@ -78,7 +78,7 @@ def heard(ran: Ran, *words: str) -> bool:
     return any(all(word in line for word in words) for line in ran.lines)
 
 
-def test_robot_learns_what_it_is_told(ran: Ran) -> None:
+def test_robot_learns_from_a_description(ran: Ran) -> None:
     assert heard(ran, "I learned how 'pair' is laid")
     with Session(ran.memory) as session:
         assert [layout.name for layout in session.layouts()] == ["pair"]

@@ -17,7 +17,7 @@ from deixis.grammar.utterances import Utterance
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add, Change, Finish
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
-from deixis.memory.episodes.predicates import SAID
+from deixis.memory.episodes.predicates import SAID, SAYS
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
@@ -26,7 +26,7 @@ from deixis.perception.tracking.frames.frame import Frame
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import UNNAMED
-from deixis.robot.live.learner import DONE, NOT_FOUND, NOT_SEEN, SAYS, Learner
+from deixis.robot.live.learner import DONE, NOT_FOUND, NOT_SEEN, Learner
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.run import live_robot
 from deixis.robot.live.senses import DROPPED, ENDED, NOTICED, TABLE, Senses
@@ -157,6 +157,27 @@ def test_a_full_disk_during_a_look_loses_no_thing_and_no_table(tmp_path: Path, m
         tables = [each for each in statements if each.predicate == TABLE]
         assert len(tables) == len(list(folder.glob("*.scene.json"))) >= 2
     assert seen[0] == seen[1]
+
+
+def test_a_scene_that_a_full_disk_refuses_is_written_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from deixis.workflows.scenes import perceive
+
+    monkeypatch.setattr("deixis.robot.modules.RESTART_PAUSE", 0.001)
+    script, write, failures = tmp_path / "pair.layout", perceive.write_scene, iter([True, True, True])
+    script.write_text("layout pair\nfork left of plate\n", encoding="utf-8")
+
+    def full(*arguments: object) -> object:
+        if next(failures, False):
+            raise OSError(28, "No space left on device")
+        return write(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(perceive, "write_scene", full)
+    senses = Senses({"source": "simulator", "layout": str(script), "seed": 2, "rate": 0.5}, str(tmp_path))
+    with Blackboard.transient() as board:
+        lines = take_in(senses, board)
+        assert len(noted(board, TABLE)) == len(list(tmp_path.glob("*.scene.json"))) >= 2
+        assert not any("could not be used" in str(note) for note in noted(board, NOTICED))
+    assert len(lines) == 1 and "No space left on device" in lines[0]
 
 
 def told(board: Blackboard, learner: Learner, *statements: tuple[str, str, str], failures: int = 0) -> list[str | None]:

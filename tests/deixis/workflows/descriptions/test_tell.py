@@ -58,7 +58,7 @@ def test_reading_all_told_facts_gives_the_same_facts(said: list[str]) -> None:
 
 @given(statements(WIDE, [""]))
 @settings(max_examples=40, deadline=None)
-def test_what_is_left_out_follows_from_what_is_told(said: list[str]) -> None:
+def test_what_is_left_out_follows_from_the_description(said: list[str]) -> None:
     script = deixis.read_script(text="\n".join(said))
     told = deixis.tell(script)
     again = read_again(told)
@@ -95,7 +95,7 @@ def test_choices_are_read_as_one_fact() -> None:
     ]
 
 
-def test_kinds_and_colours_are_told() -> None:
+def test_kinds_and_colours_are_described() -> None:
     script = deixis.read_script(text="prong is a fork; prong left of plate; plate is white")
     again = read_again(deixis.tell(script))
     assert again.kinds["prong"].label == "fork"
@@ -124,7 +124,7 @@ def test_a_label_that_is_a_plural_has_a_plural_verb() -> None:
     assert "he chopsticks are " in told.text and "chopsticks is" not in told.text
 
 
-def test_an_english_text_is_told_with_its_claims() -> None:
+def test_an_english_text_is_described_with_its_claims() -> None:
     text = "The lamp is in the far left corner of the desk. The cup is between the lamp and the jug. The cup is red."
     told = deixis.tell(deixis.read_script(text=text, english=True))
     again = read_again(told)

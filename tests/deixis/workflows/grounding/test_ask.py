@@ -46,7 +46,7 @@ def matches(out: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("script", ["script1.layout", "formal_dinner.layout"])
-def test_an_oracle_settles_who_is_who_in_few_questions(script: str, tmp_path: Path) -> None:
+def test_an_oracle_settles_the_matches_in_few_questions(script: str, tmp_path: Path) -> None:
     oracle = tmp_path / "truth.json"
     oracle.write_text(json.dumps(TRUTH), encoding="utf-8")
     code, out, err = deixis("ground", example(script), SCENE, "--oracle", oracle, "--json", "--no-sizes")
@@ -75,7 +75,7 @@ def test_only_the_exact_engine_asks() -> None:
     assert "leave out --engine" in err
 
 
-def test_a_truth_file_that_is_none_is_bad_input(tmp_path: Path) -> None:
+def test_a_malformed_truth_file_is_bad_input(tmp_path: Path) -> None:
     oracle = tmp_path / "truth.json"
     oracle.write_text('["o1"]', encoding="utf-8")
     code, out, err = deixis("ground", example("script1.layout"), SCENE, "--oracle", oracle)
@@ -237,7 +237,7 @@ def test_an_uncertain_viewpoint_limits_probabilities_to_one_side(tmp_path: Path)
     assert not doubt(0.99)
 
 
-def test_no_side_is_told_where_every_angle_does_as_well(tmp_path: Path) -> None:
+def test_no_side_is_reported_where_every_angle_fits_alike(tmp_path: Path) -> None:
     script = layout_file(tmp_path, "cup inside box")
     scene = boxes_file(tmp_path, [[0.0, 0.0]], side=0.6)
     things = json.loads(scene.read_text(encoding="utf-8"))
@@ -265,7 +265,7 @@ def test_a_ruled_out_match_leaves_an_uncertain_label_uncertain(tmp_path: Path) -
     assert told.problem.absent.tolist() == evidence.problem.absent.tolist()
 
 
-def test_an_answer_about_forks_says_nothing_of_the_knives(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_answer_about_forks_leaves_the_knives_open(monkeypatch: pytest.MonkeyPatch) -> None:
     script, scene = example("script1.layout"), example("place_setting.scene.json")
     before = json.loads(deixis("ground", script, scene, "--json")[1])
     monkeypatch.setattr("sys.stdin", io.StringIO("yes\n"))

@@ -97,7 +97,7 @@ def test_a_thing_of_wrong_size_and_place_is_not_a_misplaced_fork() -> None:
     assert not checked.table.well
 
 
-def test_what_is_far_too_high_for_a_knife_is_no_misplaced_knife() -> None:
+def test_a_thing_too_high_for_a_knife_is_not_a_misplaced_knife() -> None:
     mug = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.1))  # as long and as wide as a knife that lies aslant
     low = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.02))
     layout, knife = "butter_knife left of plate", {"butter_knife"}
@@ -111,7 +111,7 @@ def test_a_thing_with_the_size_or_label_of_a_fork_is_misplaced() -> None:
         assert "fork" in roles(checked, RoleVerdict.MISPLACED) and not checked.table.extra
 
 
-def test_a_thing_in_the_place_of_a_fork_is_undetermined() -> None:
+def test_a_thing_where_a_fork_belongs_is_undetermined() -> None:
     for label in (None, "fork"):
         fork = replace(box("o2", (-0.4, 0.0, 0.0), CUBE), label=label, confidence=0.8)
         assert roles(check(Scene((PLATE, fork)), "fork left of plate"), RoleVerdict.UNDETERMINED) == {"fork"}
@@ -164,7 +164,7 @@ def test_without_labels_a_place_is_never_called_correct() -> None:
     assert not checked.table.of(RoleVerdict.CORRECT)
 
 
-def test_an_unsure_label_is_no_identity() -> None:
+def test_an_unsure_label_does_not_identify_a_thing() -> None:
     scene = formal_setting()
     unsure = replace(scene, objects=tuple(replace(o, confidence=0.6) for o in scene.objects))
     assert len(check(unsure).table.of(RoleVerdict.UNDETERMINED)) == 12
@@ -256,7 +256,7 @@ def test_exactly_the_three_swapped_objects_are_misplaced(turn: tuple[str, str, s
     assert roles(check(turned), RoleVerdict.MISPLACED) == set(turn)
 
 
-def test_nothing_is_held_against_what_nothing_is_said_of() -> None:
+def test_a_thing_without_a_failed_fact_is_not_misplaced() -> None:
     boxes = {"fork": 1, "knife": 0, "plate": 2, "salt_shaker": 4}
     scene = Scene(tuple(PerceivedObject(n, (x, 0.0), (x + 0.5, 1.0), label=n) for n, x in boxes.items()))
     says = "fork left of plate; knife right of plate; salt_shaker is a SaltShaker"
@@ -366,7 +366,7 @@ def test_a_knife_turned_the_wrong_way_comes_with_a_remedy(text: str, remedy: str
     assert not checked.table.well and not checked.conforms
 
 
-def test_an_unknown_side_of_a_blade_is_no_fault() -> None:
+def test_an_unknown_side_of_a_blade_is_not_a_fault() -> None:
     checked = check(laid((0.0, 1.0)), "knife right of plate; knife facing plate")
     assert checked.table.well and checked.conforms
 

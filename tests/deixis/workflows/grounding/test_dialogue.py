@@ -43,7 +43,7 @@ def test_answers_at_the_terminal_lead_to_one_grounding() -> None:
     assert text.endswith("One of the considered groundings is left after 2 questions.\n")
 
 
-def test_what_is_no_answer_is_asked_again() -> None:
+def test_an_invalid_answer_is_asked_again() -> None:
     done, text = typed(three_cups(QuestionKind.RELATION), "perhaps", "yess", "yes")
     assert "'perhaps' is not an answer" in text
     assert "'yess' is not an answer; did you mean 'yes'?" in text
@@ -129,13 +129,13 @@ def test_the_oracle_knows_what_is_not_there() -> None:
         ({"cup": "o1", "mug": "o1"}, "two objects have the id 'o1'"),
     ],
 )
-def test_a_truth_file_that_is_none_is_refused(tmp_path: Path, data: object, message: str) -> None:
+def test_a_malformed_truth_file_is_refused(tmp_path: Path, data: object, message: str) -> None:
     with pytest.raises(OracleError, match="truth") as error:
         read_oracle(oracle_file(tmp_path, data), three_cups().situation, io.StringIO())
     assert message in str(error.value)
 
 
-def test_a_missing_truth_file_is_told_by_its_name(tmp_path: Path) -> None:
+def test_the_error_names_a_missing_truth_file(tmp_path: Path) -> None:
     with pytest.raises(OracleError, match=r"nowhere\.json: there is no such file"):
         read_oracle(tmp_path / "nowhere.json", three_cups().situation, io.StringIO())
 

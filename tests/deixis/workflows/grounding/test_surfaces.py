@@ -118,7 +118,7 @@ def test_a_tray_that_is_an_object_is_not_the_surface() -> None:
     assert found.surface is None and found.matches["tray"].perceived == "seen_tray"
 
 
-def test_two_things_with_the_label_of_the_surface_are_no_surface() -> None:
+def test_two_things_with_the_label_of_the_surface_are_not_it() -> None:
     scene = table({"tray": BOXES["tray"], "bowl": BOXES["bowl"]})
     other = PerceivedObject("other", (1.0, 0.0, 0.0), (1.5, 0.35, 0.02), label="tray", confidence=1.0)
     graph, kinds = told().graph(), default_ontology().kinds

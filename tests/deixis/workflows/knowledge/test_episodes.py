@@ -200,7 +200,9 @@ def test_finished_experience_is_consolidated_in_the_background(board: Blackboard
     ],
     ids=lambda value: str(value)[:30],
 )
-def test_a_place_without_a_box_is_no_thing_of_a_scene(text: str, corners: tuple[tuple[float, ...], ...] | None) -> None:
+def test_a_place_without_a_box_is_not_a_thing_of_a_scene(
+    text: str, corners: tuple[tuple[float, ...], ...] | None
+) -> None:
     scene = scene_of([episodic("p", ("t1", "at", text), start=0.0, source=SEEN)], 1.0)
     assert (None if scene is None else (scene.objects[0].minimum, scene.objects[0].maximum)) == corners
 

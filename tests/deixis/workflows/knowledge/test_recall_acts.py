@@ -41,6 +41,7 @@ HISTORY = [
     (("Ben", "took", "t3"), 1800, 1800.001, SEEN),
     (("Ada", "put", "t5"), 300, 300.001, Source(Origin.SAID, "Ben", "words 1")),
     (("Ben", "said", "The cups belong in the kitchen."), 1900, 1901, Source(Origin.SAID, "Ben", "words 2")),
+    (("learner", "says", "I see."), 1901, 1901.001, Source(Origin.INFERRED, "learner")),
     (("Ben", "said", "What did I tell you about the cups?"), 1950, 1951, Source(Origin.SAID, "Ben", "words 3")),
 ]  # fmt: skip
 
@@ -59,6 +60,7 @@ def board() -> Iterator[Blackboard]:
 
 UNSEEN_MOVE = "who moved the fork at 11:20:00 was not seen"
 ADA_MOVED = "Ada moved the fork at 11:10:00 (seen, certainty 0.95)"
+ADA_HERE = "at 11:10:00"
 BEN_TOOK = "Ben took the cup away at 11:30:00 (seen, certainty 0.95)"
 
 
@@ -77,6 +79,29 @@ BEN_TOOK = "Ben took the cup away at 11:30:00 (seen, certainty 0.95)"
         ("who brought the spoon", "Ada put the spoon down at 11:05:00 (said by Ben)."),
         ("who put the fork on the plate?", f"Not known: {UNSEEN_MOVE}."),
         ("Which things did Ben take away?", f"{BEN_TOOK}; who took the knife away at 11:40:00 was not seen."),
+        ("Who was here?", f"Ada was seen {ADA_HERE}; Ben was seen and heard from 11:30:00 to 11:32:30."),
+        ("who has been at the table before 11:20", f"Ada was seen {ADA_HERE}."),
+        ("How many people were here?",
+         f"2: Ada was seen {ADA_HERE}; Ben was seen and heard from 11:30:00 to 11:32:30."),
+        ("Was Ben here?", "Yes: Ben was seen and heard from 11:30:00 to 11:32:30."),
+        ("When did you last see Ben?", "Ben was heard at 11:32:30."),
+        ("Where is Ada?", "Ada was seen at 11:10:00; the places of persons are not recorded."),
+        ("Was Ben here before 11:20?", "Not known: this person was not seen or heard for that time."),
+        ("What happened to the cup?",
+         f"The cup was near the knife from 11:00:00 to 11:30:00 (seen); {BEN_TOOK}."),
+        ("What became of the knife?",
+         "The knife was right of the plate from 11:00:00 to 11:40:00 (seen); who took the knife away at 11:40:00 was "
+         "not seen."),
+        ("What has happened since 11:25?",
+         "The knife was right of the plate from 11:00:00 to 11:40:00 (seen); the cup was near the knife from 11:00:00 "
+         f"to 11:30:00 (seen); {BEN_TOOK}; who took the knife away at 11:40:00 was not seen."),
+        ("What did Ben do with the cup?", f"Yes: {BEN_TOOK}."),
+        ("What things has Ada touched?",
+         f"Ada put the spoon down at 11:05:00 (said by Ben); {ADA_MOVED}; {UNSEEN_MOVE}; who took the knife away at "
+         "11:40:00 was not seen."),
+        ("What was the last thing Ben said?", "Ben said at 11:32:30: What did I tell you about the cups?"),
+        ("What did you say?", "The robot said at 11:31:41: I see."),
+        ("Since when has the knife been missing?", "The knife went at 11:40:00 (seen)."),
         ("What did Ada move?", f"{ADA_MOVED}; {UNSEEN_MOVE}."),
         ("What did Ben move?", f"Not known: nothing is recorded as moved by Ben; {UNSEEN_MOVE}."),
         ("What has Eve moved?", "Not known: nothing is recorded that 'eve' said, showed or did."),

@@ -239,7 +239,7 @@ def test_several_tables_go_to_numbered_files(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.glob("*.json")) == ["t-1.scene.json", "t-2.scene.json"]
 
 
-def test_a_contradiction_is_told_with_its_lines_and_exit_code_1() -> None:
+def test_a_contradiction_is_printed_with_its_lines_and_exits_1() -> None:
     script = EXAMPLES / "contradiction.layout"
     code, out, _ = deixis("imagine", script)
     assert code == 1
@@ -255,7 +255,7 @@ def test_a_contradiction_is_told_with_its_lines_and_exit_code_1() -> None:
     }
 
 
-def test_a_contradiction_that_needs_exhaustion_is_told_too(tmp_path: Path) -> None:
+def test_a_contradiction_that_needs_exhaustion_is_found_too(tmp_path: Path) -> None:
     text = "a left of or above b\nnot left(a, b)\nb above c\nc above a\nd left of a"
     code, out, _ = deixis("imagine", script_file(tmp_path, text))
     assert code == 1
@@ -286,7 +286,7 @@ def test_json_says_what_the_text_says(tmp_path: Path) -> None:
     assert (conflict["sizes"], conflict["minimal"]) == ([], True)
 
 
-def test_given_up_facts_are_told_with_the_reason(tmp_path: Path) -> None:
+def test_given_up_facts_are_reported_with_the_reason(tmp_path: Path) -> None:
     script = script_file(tmp_path, "fork left of plate\nusually fork right of plate")
     out = deixis("imagine", script)[1]
     assert f"Given up: right(fork, plate) ({script}:2:1) [weight 0.8], which goes against" in out

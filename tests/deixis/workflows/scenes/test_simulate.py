@@ -128,7 +128,7 @@ def test_only_what_a_script_has_beside_its_table_is_not_on_it(script: str, besid
 
 
 @pytest.mark.parametrize("seed", [-1, 1.5, None])
-def test_a_seed_that_is_none_is_refused(seed: Any) -> None:
+def test_an_invalid_seed_is_refused(seed: Any) -> None:
     with pytest.raises(DeixisError, match="`seed` must be a whole number"):
         simulate("formal_dinner.layout", seed=seed)
 

@@ -89,7 +89,7 @@ def test_a_write_that_the_semantic_store_refuses_changes_neither(
     assert state(memory) == before and findings(memory) == ()
 
 
-def test_views_that_cannot_be_written_are_once_they_can(
+def test_views_are_written_as_soon_as_the_disk_allows(
     example: Example, memory: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with Session(memory) as session, monkeypatch.context() as patched:

@@ -173,6 +173,13 @@ def test_cutlery_on_two_sides_of_a_plate_is_not_one_object() -> None:
     assert not len(bridged(_below(plate, fork, knife)))
 
 
+@pytest.mark.parametrize(("x", "joined"), [(0.0, False), (0.12, True)], ids=["its own foot", "what lies beside it"])
+def test_the_foot_of_a_glass_does_not_continue_behind_it(x: float, joined: bool) -> None:
+    bowl = _grid((-0.05, 0.05), (-0.05, 0.05), 0.1)
+    foot, knife = _grid((x - 0.03, x + 0.03), (-0.03, 0.03), 0.006), _grid((x - 0.02, x + 0.02), (0.07, 0.17), 0.006)
+    assert len(bridged(_below(bowl, foot, knife))) == joined
+
+
 def test_a_round_plate_continues_below_a_napkin_of_any_width() -> None:
     disc = _grid((-0.13, 0.13), (-0.13, 0.13), 0.01)
     disc = disc[np.linalg.norm(disc[:, :2], axis=1) < 0.132]

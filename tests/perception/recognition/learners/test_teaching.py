@@ -96,7 +96,7 @@ def test_new_categories_are_met_before_they_are_taught() -> None:
     assert found.unknown_auroc == 1.0
 
 
-def test_the_unknown_is_told_by_doubt_from_what_is_asked_about() -> None:
+def test_doubt_separates_the_unknown_from_the_asked() -> None:
     found, _ = course([True, False, True, True, True], categories=2)  # doubts 0, 2, 0, 0, 0 and, of the new one, 1
     assert [answer.unknown for answer in found.answers] == [0, 2, 0, 0, 0] and found.unknown_auroc == 0.8
 

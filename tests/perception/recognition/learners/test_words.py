@@ -20,7 +20,7 @@ def test_descriptors_are_counted_as_their_nearest_word() -> None:
     assert BOOK.counts(view(1.0, 4.0, 6.0, 11.0, 12.0)).tolist() == [2, 3]
 
 
-def test_a_codebook_finds_clusters_that_nobody_named() -> None:
+def test_a_codebook_finds_clusters_without_names() -> None:
     rng = np.random.default_rng(1)
     near = [view(*(place + rng.uniform(-0.1, 0.1, 20))) for place in (1.0, 5.0, 9.0)]
     assert np.sort(Codebook.of(near, words=3).centres[:, 0]) == pytest.approx([1, 5, 9], abs=0.1)

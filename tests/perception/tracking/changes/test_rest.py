@@ -35,7 +35,7 @@ def test_thing_whose_place_shows_the_table_moves() -> None:
 
 
 @pytest.mark.parametrize(("count", "is_anew"), [(1, False), (2, True)])
-def test_table_is_laid_anew_if_most_things_left_at_once(count: int, is_anew: bool) -> None:
+def test_table_is_laid_again_if_most_things_left_at_once(count: int, is_anew: bool) -> None:
     look = first_look([PLATE, MUG])
     changes = seen_without(look, *range(1, count + 1)).changes
     assert is_laid_anew(look.things.resting, changes, HALF.moved) == is_anew
@@ -55,3 +55,18 @@ def test_mug_is_lifted_if_its_foot_is_gone_by_hand(hand_at: float, is_foot: bool
     seen.changes.counts[mug.slot, FARTHER] += len(left)
     assert is_lifted(mug, look.table.reference, seen) == lifted
     assert not is_lifted(plate, look.table.reference, seen)
+
+
+@pytest.mark.parametrize(("known", "moves"), [(1.0, True), (0.1, False)])
+def test_few_known_pixels_do_not_tell_that_a_thing_left(known: float, moves: bool) -> None:
+    look = first_look([PLATE, MUG])
+    _, mug = look.things
+    own = np.flatnonzero(look.table.reference.owner == mug.slot)
+    kept = max(int(known * len(own)), 12)
+    look.table.reference.owner.ravel()[own[kept:]] = UNKNOWN_OWNER
+    look.table.reference.depth.ravel()[own[kept:]] = 0.0
+    seen = replace(look.seen(0.1), is_camera_moving=True)
+    seen.changes.counts[mug.slot] = 0
+    seen.changes.counts[mug.slot, FARTHER] = kept
+    look_at_resting(look.things, look.table, seen, HALF)
+    assert mug.active == moves

@@ -108,10 +108,13 @@ def test_only_long_flat_things_go_on() -> None:
 
 def test_length_is_between_what_is_seen_and_what_can_be_hidden() -> None:
     for seen, most in ((0.08, 0.18), (0.15, 0.19), (0.2, 0.21)):
-        mean, spread = likely_length(seen, 0.02, most)
+        mean, spread = likely_length(seen, 0.02, 0.008, most)
         assert seen <= mean <= most and 0 < spread < most - seen
-    assert likely_length(0.1, 0.06, 0.4)[0] > likely_length(0.1, 0.02, 0.4)[0], "only large spoons are so wide"
-    assert likely_length(0.215, 0.02, 0.4)[0] < 0.215 + 0.015, "it is right for a knife whose end is just seen, too"
+    assert likely_length(0.1, 0.06, 0.02, 0.4)[0] > likely_length(0.1, 0.03, 0.017, 0.4)[0], "a tablespoon, a teaspoon"
+    assert likely_length(0.1, 0.012, 0.018, 0.4)[0] < likely_length(0.1, 0.023, 0.008, 0.4)[0], "a spoon, a knife"
+    assert likely_length(0.215, 0.02, 0.008, 0.4)[0] < 0.215 + 0.015, (
+        "it is right for a knife whose end is just seen, too"
+    )
 
 
 def test_report_has_the_supposed_length_and_its_spread() -> None:
@@ -133,7 +136,10 @@ def test_report_has_the_supposed_length_and_its_spread() -> None:
 def test_end_that_was_seen_is_not_supposed_again() -> None:
     knife = box_of(*KNIFE, 1, 0.01)
     assert knife.unseen_ends((0.0, 0.08)) == (0.0, 0.08)
-    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.0), "the first end was seen before, the other one is seen now"
+    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.08), "the first end was seen before, the other one once only"
+    assert knife.unseen_ends((0.05, 0.07)) == (0.0, 0.07)
+    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.07)
+    assert knife.unseen_ends((0.05, 0.0)) == (0.0, 0.0), "two views in a row show it"
     assert knife.unseen_ends((0.05, 0.08)) == (0.0, 0.0)
 
 

@@ -124,7 +124,7 @@ def test_error_of_a_source_reaches_the_reader() -> None:
     ],
     ids=["bytes", "long line"],
 )
-def test_times_that_are_no_text_are_refused(tmp_path: Path, data: bytes, what: str) -> None:
+def test_times_that_are_not_text_are_refused(tmp_path: Path, data: bytes, what: str) -> None:
     (tmp_path / "a.pcd").touch()
     (tmp_path / "times.csv").write_bytes(data)
     with pytest.raises(CloudError, match=what):

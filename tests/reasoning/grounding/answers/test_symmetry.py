@@ -123,7 +123,7 @@ def test_no_objects_have_no_groups() -> None:
     assert interchangeable(RelationGraph.from_facts(R, [], []), []) == []
 
 
-def test_many_parts_that_are_alike_are_told_quickly() -> None:
+def test_many_parts_that_are_alike_are_described_quickly() -> None:
     left = (R["left"],)
     facts = [Fact(f"fork{i}", left, f"plate{i}") for i in range(300)]
     names = [name for fact in facts for name in (fact.subject, fact.object)]

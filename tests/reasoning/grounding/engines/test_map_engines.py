@@ -199,7 +199,7 @@ def test_exact_answer_equals_the_sum_over_all_maps(evidence: Evidence) -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(evidences())
-def test_without_a_pivotal_fact_the_answer_is_the_one_foretold(evidence: Evidence) -> None:
+def test_without_a_pivotal_fact_the_answer_is_as_predicted(evidence: Evidence) -> None:
     found = ground(evidence, EXACT)
     if found.pivotal is None:  # not looked for where the description is probably of another scene
         assert found.fits is not None and found.fits < 0.5

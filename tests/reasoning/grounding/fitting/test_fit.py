@@ -219,14 +219,14 @@ def test_scenes_taken_out_leave_what_others_teach(gone: int) -> None:
     assert (now.statistics.scenes, now.statistics.fitted) == (len(lessons) - gone, len(lessons))
 
 
-def test_few_scenes_are_fitted_anew() -> None:
+def test_few_scenes_are_fitted_again() -> None:
     lessons, settings = alike_left(FEW_SCENES + 1), FitSettings()
     statistics = fit_relations(lessons, PRIOR, settings).statistics
     assert statistics is not None
     assert take_out(statistics, lessons[0], PRIOR, settings) is None
 
 
-def test_a_word_without_its_last_example_is_fitted_anew() -> None:
+def test_a_word_without_its_last_example_is_fitted_again() -> None:
     above = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["top"],), "b")])
     boxes = np.array([[[0, 2], [1, 3]], [[0, 0], [1, 1]], [[3, 0], [4, 1]]], dtype=float)
     only, settings = said_pairs(above, boxes, [0, 1]), FitSettings()

@@ -338,7 +338,7 @@ def test_past_the_deadline_no_other_side_is_looked_from(monkeypatch: pytest.Monk
     assert found is None or all(one.evidence is found.sides[0].evidence for one in found.sides)
 
 
-def test_engines_without_probabilities_say_nothing_of_fit() -> None:
+def test_engines_without_probabilities_give_no_fit() -> None:
     table = generate(4, 1.5, 0.0, seed=2)
     found = ground(seen(table.boxes, table.description()), engine_named("blondel"))
     assert found.fits is None and not found.sides

@@ -67,7 +67,7 @@ def boxes(draw: st.DrawFn) -> Boxes:
 
 
 @given(boxes(), st.booleans())
-def test_a_whole_turn_is_none(some: Boxes, mirrored: bool) -> None:
+def test_a_whole_turn_changes_nothing(some: Boxes, mirrored: bool) -> None:
     assert np.array_equal(turned(some, 2 * math.pi, mirrored), turned(some, 0.0, mirrored))
 
 
@@ -173,7 +173,7 @@ def test_a_scene_of_nothing_has_every_viewpoint() -> None:
     assert found.best.assignment.tolist() == [-1, -1]
 
 
-def test_boxes_that_are_none_are_refused() -> None:
+def test_invalid_boxes_are_refused() -> None:
     with pytest.raises(GraphError, match="must be finite"):
         turned(np.full((1, 2, 2), np.nan), 1.0)
 
@@ -222,7 +222,7 @@ def test_arc_without_time_for_refinement_stays_coarse(monkeypatch: pytest.Monkey
     assert min(found.best.angle, 2 * math.pi - found.best.angle) < math.radians(10)
 
 
-def test_angles_all_around_are_no_side() -> None:
+def test_angles_all_around_give_no_side() -> None:
     row = np.array([[[0.0, 0.0], [1.0, 1.0]], [[2.0, 0.0], [3.0, 1.0]]])
     nothing = Problem(
         np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 2, 2), np.float32), np.eye(2), np.zeros(2)

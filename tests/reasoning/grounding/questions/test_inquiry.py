@@ -142,7 +142,7 @@ def test_one_candidate_leaves_nothing_to_ask() -> None:
     assert best_question(row_of(2), Candidates(np.array([[0, 1]]), np.ones(1))) is None
 
 
-def test_things_are_told_by_their_place() -> None:
+def test_things_are_distinguished_by_their_place() -> None:
     both = Candidates(np.array([[0, 1, 2], [1, 0, 2]]), np.ones(2))
     texts = [question.text for question in questions(row_of(3), both, [QuestionKind.IDENTITY])]
     assert "Is the thing at the far left (o0) the cup 0?" in texts

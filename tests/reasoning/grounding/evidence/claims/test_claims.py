@@ -98,7 +98,7 @@ def test_a_row_from_left_to_right_orders_neighbours() -> None:
     assert found.tables[0][0, 1] > 0 > found.tables[0][1, 0]
 
 
-def test_nothing_on_a_thing_rules_out_what_bears_something() -> None:
+def test_nothing_on_a_thing_rules_out_what_carries_something() -> None:
     boxes = np.array([cube(0, 0, 0.3), cube(1, 0, 0.3), cube(0, 0, 0.1, low=0.1)])
     bare = said([Claim("none_on", ("s",))], boxes=boxes).unary[0]
     assert bare[1] > bare[0]

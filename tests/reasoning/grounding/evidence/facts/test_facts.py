@@ -71,7 +71,7 @@ def test_a_hedged_fact_lies_between_nothing_and_the_plain_one(evidence: float, w
 
 
 @pytest.mark.parametrize("weight", [0.0, -1.0, 1.5, math.nan])
-def test_a_weight_that_is_none_is_refused(weight: float) -> None:
+def test_an_invalid_weight_is_refused(weight: float) -> None:
     with pytest.raises(SettingError, match="at most 1"):
         hedged(np.zeros(1), weight)
 

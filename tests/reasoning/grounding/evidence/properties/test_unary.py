@@ -51,7 +51,7 @@ def test_much_higher_thing_is_not_a_fork() -> None:
     assert not too_high([FORK], things(9.0), SIZES, {FORK: SizeModel((0.0, 1.0), (0.0, 1.0))}).any()
 
 
-def test_a_soup_spoon_is_no_plate() -> None:
+def test_a_soup_spoon_is_not_a_plate() -> None:
     found = size_evidence([SPOON, PLATE], TABLE, SIZES)
     assert found.argmax(axis=1).tolist() == [0, 1]
     assert found[0, 1] < 0 < found[0, 0] and found[1, 0] < 0 < found[1, 1]
@@ -92,7 +92,7 @@ def test_a_fork_at_any_angle_is_a_fork_before_it_is_a_plate(degrees: int) -> Non
     assert found[0] > found[1:].max() + 1
 
 
-def test_heights_are_no_part_of_the_plan() -> None:
+def test_heights_are_not_part_of_the_plan() -> None:
     upright = np.concatenate([TABLE, np.array([[[0.0], [0.03]]] * 3)], axis=2)
     assert size_evidence([SPOON, PLATE], upright, SIZES) == pytest.approx(size_evidence([SPOON, PLATE], TABLE, SIZES))
 
@@ -110,7 +110,7 @@ def test_sizes_in_metres_give_ratios_in_pixels() -> None:
     assert found[0, 0] - found[0, 1] < sure[0, 0] - sure[0, 1]
 
 
-def test_in_an_image_a_person_stands_and_is_no_car() -> None:
+def test_in_an_image_a_person_stands_and_is_not_a_car() -> None:
     person, car = (kind.iri for word in ("person", "car") if (kind := KINDS.of_word(word)))
     photograph = np.array([[[0.0, 0.0], [60.0, 170.0]], [[100.0, 0.0], [520.0, 150.0]]])
     found = size_evidence([car, person], photograph, SIZES, metric=False)
@@ -163,7 +163,7 @@ def test_a_broader_word_says_less_than_the_very_kind() -> None:
     assert said[0] > said[1] > said[2] > 0
 
 
-def test_a_name_that_is_no_kind_says_more_than_a_kind() -> None:
+def test_a_name_that_is_not_a_kind_says_more_than_a_kind() -> None:
     named = RelationGraph.from_facts(R, ["thingamajig", "dinner_plate"], [], kinds=[None, PLATE])
     found = label_ratios(named, [Label("thingamajig"), Label("dinner plate")], KINDS).ratios
     assert found[0, 0] > found[1, 1] > 4

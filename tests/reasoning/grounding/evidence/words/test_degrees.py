@@ -185,7 +185,7 @@ def test_chance_of_no_pairs_is_1() -> None:
 
 
 @pytest.mark.parametrize("count", [0, 1])
-def test_no_pairs_are_no_error(count: int) -> None:
+def test_no_pairs_raise_no_error(count: int) -> None:
     boxes = np.zeros((count, 2, 2))
     assert word_degree(pair_geometry(boxes), "left", MODELS).shape == (count, count)
     assert saying_degree(pair_geometry(boxes), MODELS).shape == (count, count)

@@ -166,7 +166,7 @@ def test_a_mass_outside_its_range_is_refused(mass: float) -> None:
         posterior(large(2), mass=mass)
 
 
-def test_a_start_that_is_no_map_is_refused() -> None:
+def test_a_start_that_is_not_a_map_is_refused() -> None:
     with pytest.raises(MatchingError):
         posterior(large(2), start=np.array([1, 1]))
 

@@ -96,7 +96,7 @@ class LooksClock(Clock):
         return self.looks * self.step
 
 
-def test_in_a_hurry_it_still_cools_all_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_short_time_limit_still_cools_all_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[float] = []
 
     def record(*arguments: Any) -> float:
@@ -114,7 +114,7 @@ def test_in_a_hurry_it_still_cools_all_the_way(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize("start", [[0, 0], [0], [5, 1], [-2, 0]])
-def test_a_start_that_is_no_map_is_refused(start: list[int]) -> None:
+def test_a_start_that_is_not_a_map_is_refused(start: list[int]) -> None:
     with pytest.raises(MatchingError):
         scalable(random_problem(2), start=np.array(start))
 
