@@ -115,7 +115,8 @@ def _stands_at(other: Pipeline, places: NDArray[np.float64]) -> NDArray[np.bool_
     away = np.linalg.norm(points[:, :2] - middle[:2], axis=1)[points[:, 2] < places[:, 2].max() + FOOT]
     if len(away) < MIN_FOOT_POINTS:
         return inside
-    return inside & (np.linalg.norm(places[:, :2] - middle[:2], axis=1) < np.quantile(away, MOST_OF_FOOT))
+    at_foot = np.linalg.norm(places[:, :2] - middle[:2], axis=1) < np.quantile(away, MOST_OF_FOOT)
+    return np.asarray(inside & at_foot)
 
 
 def _lines_beyond(thing: Pipeline, sign: int) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
