@@ -646,7 +646,7 @@ def _without_following(words: list[Word]) -> None:
 
 
 def _join_qualities(words: list[Word]) -> None:
-    """Read *a quiet, peaceful corner* without the comma, as the second word is no thing of its own."""
+    """Read *a quiet, peaceful corner* without the comma, since the second word does not name a thing."""
     for i in range(len(words) - 3, 1, -1):
         if words[i].norm == "," and words[i - 2].norm in DETERMINERS and words[i - 1].norm in QUALITIES:
             after = words[i + 1].norm
