@@ -151,7 +151,7 @@ def test_what_is_said_first_is_read_first(text: str, expected: list[str]) -> Non
         ("The fork rests in the bowl.", ["inside(fork, bowl)"]),
     ],
 )
-def test_nouns_like_verbs_are_told_by_their_clause(text: str, expected: list[str]) -> None:
+def test_nouns_like_verbs_are_recognised_by_their_clause(text: str, expected: list[str]) -> None:
     found = asserted(text)
     assert found[: len(expected)] == expected
     assert not [fact for fact in found if "rest" in fact or "left(cup, knife)" in fact]
