@@ -132,6 +132,11 @@ _REWORDED = tuple(
     (re.compile(pattern), wording)
     for pattern, wording in (
         (r"^what (?=(?:thing|object|one)s?\b)", "which "),
+        (r",? and when(?: was (?:it|that))?$", ""),
+        (rf"\b({_VERB}) (?:off|from) (?:the|this|my|our) (?:table|desk)\b", r"\1 away"),
+        (rf"^(who {_VERB}) what$", r"\1 something"),
+        (rf"^when was the (first|last) time (?:that )?(?:any|some) ?(?:one|body) ({_VERB}) (.+)$", r"who \2 \3 \1"),
+        (rf"^when was the (first|last) time (?:that )?(.+?) ({_VERB}) (.+)$", r"when did \2 \3 \4 \1"),
         (r"^(?:who (?:was|is) it (?:who|that)|wh(?:ich|at) (?:person|one of (?:us|them))|whose hand)\b", "who"),
         (rf"^who (?:has|have|had|is|was)(?: just| been)* (?={_VERB}\b)", "who "),
         (rf"^who (?:is|was) responsible for (?={_VERB}\b)", "who "),

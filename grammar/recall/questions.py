@@ -124,7 +124,15 @@ _REWORDED = tuple(
         (r"^(?:whom?|which (?:people|persons)) (?:did|have) you (?:see|seen|meet|met|hear|heard)\b", "who was there"),
         (rf"^(?:was|were|has|have) (?:{_ANYONE})(?: been)? {_HERE}\b", "who was there"),
         (rf"^how many (?:people|persons) (?:were|are|have been) {_HERE}\b", "how many people were there"),
-        (r"^(?:was|were|has|have) ([\w ]+?)(?: ever)?(?: been)? (?:here|around|present)\b", r"was \1 there"),
+        (r"^who (?:came|dropped|stopped)(?: (?:by|in|round|over|along|here))*"
+         r"(?= (?:today|yesterday|since|before|after|at|in|between|this)\b|$)", "who was there"),
+        (rf"^(?:any|some) ?(?:one|body) {_HERE}\b", "who was there"),
+        (rf"^who was the (first|last)(?: one| person)? (?:to be )?{_HERE}$", r"who was there \1"),
+        (r"^(?:was|were|has|have|is|are) ([\w ]+?)(?: still)?(?: ever)?(?: been)? (?:here|around|present)\b",
+         r"was \1 there"),
+        (r"^(what|which [\w ]+?) (?:stood|lay|sat)\b", r"\1 was"),
+        (r"^(where (?:is|are|was|were) .+?) (?:standing|lying|sitting|placed)\b", r"\1"),
+        (r"^what (?:is|was) different(?: now)?\b", "what changed"),
         (r"^(?:when|how long) (?:was|were|has|have) ([\w ]+?)(?: been)? (?:here|around|present)\b",
          r"how long was \1 there"),
         (r"^who (?:spoke|talked|said (?:any|some)thing)(?: to you)?\b", "what did anyone say"),
@@ -132,7 +140,7 @@ _REWORDED = tuple(
         (r"^what (?:was|were) the (first|last) (?:thing|sentence|word)s? (?:that )?(.+?) (?:said|told you)\b",
          r"what did \2 say \1"),
         (r"^what (?:did|have) you (?:say|said)\b", "what did the robot say"),
-        (r"^what (?:have|did) you (?:ever )?(?:learned|learnt|learn) from (.+)", r"what did \1 show you"),
+        (r"^what (?:have|did) you (?:ever )?learn(?:ed|t)? from (.+)", r"what did \1 show you"),
         (r"^what (?:did|has|have) (.+?) (?:teach|taught) you\b", r"what did \1 show you"),
         (r"^(?:has|have|is|was|were) (.+?) always (?:been )?there\b", r"how long was \1 there"),
         (r"^did (.+?) (?:always )?(?:stay|remain)(?: (?:where (?:it|they) (?:was|were)|there|in (?:its|their) place))?"
@@ -177,6 +185,7 @@ _REWORDED = tuple(
          lambda found: f"{found[1]} did you last see {found[2] or found[3]}"),
         (r"^when (was|were) (.+) there$", r"how long \1 \2 there"),
         (r"^(?:has|did) (?:any|some)thing (?:changed?|happen(?:ed)?)\b(?! to)", "what changed"),
+        (r"^(?:has|did) (?:any|some)thing happen(?:ed)? to ", "what happened about "),
         (r"^what (?:(?:has |had )?(?:happened (?:to|with)|become of)|became of) ", "what happened about "),
         (r"^what (?:is|has|was) (?:been )?(?:going on|happening)\b|^what went on\b", "what happened"),
     )

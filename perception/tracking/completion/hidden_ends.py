@@ -33,6 +33,10 @@ END, ACROSS = 0.01, (0.1, 0.5, 0.9)
 """Length in metres of the end of a thing whose points say where across its box it goes on, and the quantiles of these
 points at which that is looked at."""
 
+MAX_ELONGATION, FOOT, MIN_FOOT_POINTS, MOST_OF_FOOT = 1.3, 0.01, 10, 0.95
+"""Largest ratio of the sides of a thing that may be round, the height in metres above the long thing of the part of it
+that counts as its foot, the minimum number of points of the foot, and their share within its radius."""
+
 MAX_BEYOND = 0.3
 """Largest distance in metres beyond an end at which a thing is looked for."""
 
@@ -44,7 +48,7 @@ HANDLE = 0.3, 0.5, 0.85
 head. Heads and handles are equally likely to be seen."""
 
 LOW_PART = 0.3
-"""Least height of a part of a thing, as a share of the least height of the kind."""
+"""Height of the lowest part of a thing, as a share of the least height of its kind."""
 
 RIGHT = 0.014
 """Error in metres up to which a length is right. The middle is then right to 7 mm, which leaves 3 mm of a centimetre
@@ -95,10 +99,23 @@ def hidden_lengths(
             if not hidden[near].any():
                 lengths.append(0.0)
                 continue
-            free = (~goes_on & ~near) | np.any([other.contains(places, 0.0) for other in others], axis=0)
+            free = (~goes_on & ~near) | np.any([_stands_at(other, places) for other in others], axis=0)
             lengths.append(float(steps[int(free.argmax())] - STEP) if free.any() else MAX_BEYOND)
         found.append(float(np.median(lengths)))  # one line may pass an edge of what hides the end
     return found[0], found[1]
+
+
+def _stands_at(other: Pipeline, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return a mask of the places (k, 3) at which a thing stands; below the rim of a bowl, only those at its foot."""
+    inside = other.contains(places, 0.0)
+    length, width, _ = other.oriented.extents
+    if not inside.any() or length > MAX_ELONGATION * width:
+        return inside
+    points, middle = other.placed_points, other.placed_corners.mean(axis=0)
+    away = np.linalg.norm(points[:, :2] - middle[:2], axis=1)[points[:, 2] < places[:, 2].max() + FOOT]
+    if len(away) < MIN_FOOT_POINTS:
+        return inside
+    return inside & (np.linalg.norm(places[:, :2] - middle[:2], axis=1) < np.quantile(away, MOST_OF_FOOT))
 
 
 def _lines_beyond(thing: Pipeline, sign: int) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:

@@ -17,7 +17,7 @@ INSIDE = "inside"
 """Relation of things to the container in which they are kept."""
 
 MIN_LENGTH = 0.3
-"""Least usual length in metres of a container that does not stand on a table, such as a cupboard."""
+"""Minimum length in metres, for the shortest of its kind, at which a container does not stand on a table."""
 
 
 @dataclass(frozen=True, slots=True)

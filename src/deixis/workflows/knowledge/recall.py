@@ -98,6 +98,7 @@ OF_PRESENCE = {
     "whether_there": "whether_present",
     "whether_did": "whether_present",
     "when_there": "who_there",
+    "when_did": "who_there",
     "where": "where_person",
     "where_was": "where_person",
     "seen_last": "who_there",
@@ -533,7 +534,11 @@ class _Remembering:
             return question
         if question.thing.lower() not in {name.lower() for name in self._known_persons()}:
             return question
-        order = "last" if question.kind in ("seen_last", "where", "where_was") else question.order
+        order = question.order
+        if question.event == "gone" or question.kind in ("seen_last", "where", "where_was"):
+            order, kind = "last", "who_there" if question.kind == "seen_last" else "where_person"
+        elif question.kind == "when_did":
+            order = order or "first"
         return replace(question, kind=kind, thing=None, speaker=question.thing, event=None, order=order)
 
     def _search_of_words(self, question: RecallQuestion) -> FluentSearch:

@@ -210,7 +210,7 @@ def _presence(found: Recall, facts: list[Recalled]) -> str:
     own = [
         fact for fact in facts if fact.fluent.statement.predicate == SAID or fact.fluent.source.origin != Origin.SAID
     ]
-    facts = own or facts  # what others said of a person counts only where nothing else is known
+    facts = own or facts  # what others said about a person counts only where nothing else is known
     acts = [fact.fluent for fact in facts if fact.fluent.statement.predicate != SAID]
     ways = ["seen"] * any(act.source.origin is not Origin.SAID for act in acts)
     ways += ["heard"] * (len(acts) < len(facts))

@@ -101,6 +101,20 @@ def test_bent_thing_goes_on_where_its_end_is() -> None:
     assert hidden_lengths(bent(box_of(*KNIFE, 1, 0.01), 0.009), [], hidden, VIEW)[1] == 0.0
 
 
+@pytest.mark.parametrize(("foot", "goes_on"), [(0.02, True), (0.06, False)], ids=["a bowl", "a tumbler"])
+def test_a_knife_goes_on_below_a_rim_but_not_into_a_foot(foot: float, goes_on: bool) -> None:
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 40), np.linspace(-0.04, 0.04, 9))
+    radius = np.where(height < -0.02, foot, 0.06)
+    points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1).reshape(-1, 3)
+    cloud = PointCloud(points.astype(np.float32), np.full((len(points), 3), 190, np.uint8))
+    pose = np.eye(4)
+    pose[:3, 3] = (58 - 60) / 200, 0.04, 0.04
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (0.12, 0.12, 0.08))
+    bowl = Pipeline("t2", 2, cloud, np.array([0.06, 0.06, 0.04]), box, pose, 0.0, TrackingSettings())
+    _, after = hidden_lengths(box_of(*KNIFE, 1, 0.01), [bowl], table_with(slice(50, 66)), VIEW)
+    assert (after == pytest.approx(0.08, abs=0.006)) == goes_on
+
+
 def test_only_long_flat_things_go_on() -> None:
     for thing in (box_of(46, 50, 1, 0.01), box_of(*KNIFE, 1, 0.1)):
         assert hidden_lengths(thing, [], table_with(slice(50, 66)), VIEW) == (0.0, 0.0)
