@@ -84,9 +84,7 @@ class TripleIndex(TermIndex[str]):
         for triple in triples:
             subject, value = triple.subject, triple.object
             self.add(
-                subject.value if hasattr(subject, "value") else str(subject),
-                triple.predicate.value,
-                value.value if hasattr(value, "value") else str(value),
+                str(getattr(subject, "value", subject)), triple.predicate.value, str(getattr(value, "value", value))
             )
 
     def values(self, subject: str, predicate: str) -> list[str]:
