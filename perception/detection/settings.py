@@ -307,7 +307,7 @@ class SurfaceSettings(_Thresholds):
     test_scattered_depth_takes_seconds."""
     max_pixels_per_spacing: float = 1.5
     """Pixels of an image within one usual distance between neighbours: fewer on a surface that faces the sensor than on
-    a slanted one. In the scenes of mosd, 99.7 % of the planes are those of the points within their radius."""
+    a slanted one. In the scenes of mosd, 99.6 % of the planes are those of the points within their radius."""
     min_jump: float = 0.006
     """Metres up to which neighbours are always on one surface. If doubled, mosd 16 has two objects fewer at half
     resolution."""
