@@ -181,6 +181,8 @@ def _singulars(word: str) -> tuple[str, ...]:
         return (word, word[:-1])
     if key.endswith("ies"):
         return (word[:-1],) if len(key) == 4 else (word[:-3] + "y", word[:-1])
+    if re.search(r"[^z]zes$", key):
+        return (word[:-1], word[:-2])  # 'sizes', but 'quizzes'
     if re.search(r"(s|x|z|ch|sh)es$", key):
         return (word[:-2], word[:-1])
     if key.endswith("oes"):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from deixis.grammar.english.tree import Degree, Span
-from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective
+from deixis.grammar.english.vocabulary.adjectives import QUALITIES, adjectives, degree_of, is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
     ADVERBS,
     DETERMINERS,
@@ -645,6 +645,30 @@ def _without_following(words: list[Word]) -> None:
                 words[i].norm = "items"
 
 
+def _join_qualities(words: list[Word]) -> None:
+    """Read *a quiet, peaceful corner* without the comma, as the second word is no thing of its own."""
+    for i in range(len(words) - 3, 1, -1):
+        if words[i].norm == "," and words[i - 2].norm in DETERMINERS and words[i - 1].norm in QUALITIES:
+            after = words[i + 1].norm
+            quality = after in QUALITIES or is_adjective(after) or after.endswith(_ENDINGS_OF_QUALITIES)
+            if quality and words[i + 2].norm.isalpha() and words[i + 2].norm not in ("and", "or", "but"):
+                del words[i]
+
+
+_ENDINGS_OF_QUALITIES = ("ful", "less", "ous", "able", "ible", "ive", "ish")
+
+
+def _without_bare_purposes(words: list[Word]) -> None:
+    """Read *the cups hang there to dry* without *to dry*, which says what for."""
+    for i in range(len(words) - 2, 0, -1):
+        ends = i + 2 == len(words) or not words[i + 2].is_word or words[i + 2].norm in ("and", "but", "while")
+        if words[i].norm == "to" and words[i + 1].norm in _DRYING and ends:
+            del words[i : i + 2]
+
+
+_DRYING = word_set("dry cool drain soak air-dry")
+
+
 def _without_and_such(words: list[Word]) -> None:
     """Read *plates and cups and such* without *and such*."""
     for i in range(len(words) - 2, 1, -1):
@@ -988,6 +1012,8 @@ def words_of(text: str, span: Span) -> list[Word]:
     _without_following(found)
     _without_particles_of_filling(found)
     _without_and_such(found)
+    _join_qualities(found)
+    _without_bare_purposes(found)
     _count_halves(found)
     _without_floating_each(found)
     _join_corrections(found)

@@ -14,6 +14,7 @@ from deixis.ontology.tbox import default_ontology
         ("fork", "forks"),
         ("glass", "glasses"),
         ("box", "boxes"),
+        ("prize", "prizes"),
         ("brush", "brushes"),
         ("bench", "benches"),
         ("knife", "knives"),

@@ -543,6 +543,9 @@ class Builder(Transformer[Any, Built]):
         last_part = last_word(noun.phrase.head).rpartition("-")[2]  # 'in an L-shape'
         shown = last_part in _PICTURES and noun.phrase.determiner in ("this", "that", "the")
         shown = shown or noun.phrase.head in ("half circle", "half moon")
+        if noun.phrase.members and all(last_word(m.head) in CIRCUMSTANCES for m in noun.phrase.members):
+            misunderstood(span, "these words name no place")  # 'in different shapes and sizes'
+            return extra
         if (last_part in ARRANGEMENTS | CIRCUMSTANCES or shown) and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             of_subject = noun.phrase.predicates if noun.phrase.determiner in ("a", "an", None) else ()

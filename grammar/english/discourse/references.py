@@ -78,6 +78,7 @@ _LASTING = frozenset({"colour", "material", "contents", "ordinal", "rank"})
 """Dimensions that hold from one mention of a thing to the next, and tell it from others of its noun."""
 _OWN = frozenset({"size", "height", "length", "width", "thickness", "colour", "material", "shape"})
 """Dimensions of adjectives that are true of one thing of a kind."""
+_MIDDLES = frozenset({"middle", "central", "center", "centre"})
 _TELLING = frozenset({"with", "on", "inside", "under", "next_to", "left", "right", "behind", "in_front"})
 """Relations in a relative clause that tell one of several things: *the table that holds the lamp*."""
 _CARRYING = frozenset({"on", "across", "inside"})
@@ -606,6 +607,8 @@ class References:
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
             return self.picked(free[0], phrase)  # 'the post nearest the door'
         for adjective in phrase.adjectives:
+            if adjective.dimension == "position" and adjective.word in _MIDDLES and len(leaves) % 2 and len(leaves) > 1:
+                return self.picked(leaves[len(leaves) // 2], phrase)
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
                 return self.picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
             tag = _tag(adjective)

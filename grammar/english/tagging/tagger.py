@@ -246,6 +246,8 @@ class Tagger:
             elif counts and awaits != "nothing" and within != "place" and before != "comma":
                 subject, within = ("several" if within else "joined"), ""
             return Clause(word_class, subject, "perhaps" if awaits == "nothing" else awaits, within, mood), found
+        if word_class == "subordinate" and within == "aside" and before == "comma" and awaits == "verb":
+            return Clause(word_class, subject, "two verbs", within, mood), found  # 'the fork, if you need it, rests …'
         if word_class == "subordinate":
             return Clause(word_class, "none", "verb", "", mood), found
         if word_class == "relative":

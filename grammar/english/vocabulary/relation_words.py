@@ -16,6 +16,7 @@ ARRANGEMENTS = word_set(
 CIRCUMSTANCES = word_set(
     "time times moment moments way ways manner fashion style angle angles occasion occasions circumstances rule"
     " setting settings game games emergency emergencies colour color"
+    " shape size variety"
 )
 """Nouns that name no place after *in*, *at*, *as*, *on* and *under*: *in a formal setting*."""
 HOLIDAYS = word_set(

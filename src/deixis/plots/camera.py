@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.figure import INK, PALETTE
+from deixis.plots.figure import INK, PALE_PALETTE, PALETTE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,9 +22,6 @@ BACKGROUND_STRENGTH = 0.35
 """Share of the image's own shade in points that belong to no thing; the rest is white."""
 
 UNMEASURED = 0.98
-
-PALER = 0.55
-"""Strength of the colours after the first seven, relative to these; the rest is white."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +127,6 @@ def colours_of(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
     """
     from matplotlib.colors import to_rgb
 
-    palette = np.array([to_rgb(colour) for colour in PALETTE])
-    colours = np.vstack([palette, 1.0 - PALER * (1.0 - palette)])
+    colours = np.array([to_rgb(colour) for colour in (*PALETTE, *PALE_PALETTE)])
     chosen: NDArray[np.float64] = colours[np.asarray(numbers) % len(colours)]
     return chosen

@@ -18,6 +18,9 @@ PALETTE = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f
 
 People with the common forms of colour blindness can tell these colours apart (https://jfly.uni-koeln.de/color/)."""
 
+PALE_PALETTE = ("#99c7e0", "#f2cf80", "#b2e2d5", "#dba1c1", "#ddf0fb", "#eaae80", "#fcfad9")
+"""Palette with each colour paler, by shares that give the largest minimum distance of all 14; ink is read on them."""
+
 INK, QUIET, PAPER = "#22313f", "#9aa5ae", "#fbfaf7"
 FADED_INK = "#77808a"
 WRONG, BELONGS = PALETTE[5], PALETTE[0]

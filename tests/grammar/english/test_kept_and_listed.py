@@ -141,3 +141,17 @@ def test_participles_and_supports_stand_apart(text: str, expected: list[str]) ->
 )
 def test_what_is_said_first_is_read_first(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The cup is left of the jug, and the knife and spoon go behind it.", ["left(cup, jug)"]),
+        ("The fork, if you need it, rests in the bowl.", []),
+        ("The fork rests in the bowl.", ["inside(fork, bowl)"]),
+    ],
+)
+def test_nouns_like_verbs_are_told_by_their_clause(text: str, expected: list[str]) -> None:
+    found = asserted(text)
+    assert found[: len(expected)] == expected
+    assert not [fact for fact in found if "rest" in fact or "left(cup, knife)" in fact]

@@ -193,6 +193,10 @@ def test_fillings_companions_and_regions(text: str, expected: list[str]) -> None
         ("A small to medium cup stands on the box.", ["on(cup, box)"]),
         ("The cup is known as a mug and stands on the box.", ["on(cup, box)"]),
         ("Place the nail 2 in. from the edge of the lid.", ["distance(nail, lid, 'edge', 0.0508 m)"]),
+        ("Set the lamp in a quiet, peaceful corner.", ["corner(lamp)"]),
+        ("The pots hang on the left to dry and the spoons hang on the right.",
+         ["part(pots, 'left')", "part(spoons, 'right')"]),
+        ("The candles come in various shapes and sizes. The cup is on the box.", ["on(cup, box)"]),
         ("The hall is open to the stairs. The cup is on the box.", ["on(cup, box)"]),
         ("As the bowl is on the box, put the cup on the jar.", ["on(bowl, box)", "on(cup, jar)"]),
     ],
@@ -213,6 +217,7 @@ def test_words_beside_the_thing_and_its_place(text: str, expected: list[str]) ->
         ("There are two boxes next to the jar. On the box that holds the tea lies a cup.",
          ["next_to(box_1, jar)", "next_to(box_2, jar)", "on(cup, box_1)"]),
         ("Put a cup on the first mat and a jug on the last mat.", ["on(cup, mat_1)", "on(jug, mat_2)"]),
+        ("Three cups are in a row. The middle cup is on the box.", ["row(cup_1, cup_2, cup_3)", "on(cup_2, box)"]),
         ("Put the \u2018letter keys\u2019 in front of the lamp.", ["in_front(letter_keys, lamp)"]),
     ],
 )  # fmt: skip

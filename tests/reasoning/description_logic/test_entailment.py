@@ -6,7 +6,13 @@ import pytest
 from ontologies import CUTLERY, ntriples, triple, triples
 
 from deixis.deadline import Deadline
-from deixis.reasoning.description_logic.entailment import Entailment, LogicEngine, entail, explained, unsatisfiable_by_rules
+from deixis.reasoning.description_logic.entailment import (
+    Entailment,
+    LogicEngine,
+    entail,
+    explained,
+    unsatisfiable_by_rules,
+)
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
 from deixis.reasoning.errors import LimitError, SettingError
 

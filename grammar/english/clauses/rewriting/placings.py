@@ -327,7 +327,7 @@ def _with_owners_of_places(chunks: list[Chunk]) -> list[Chunk]:
 def _with_options_apart(chunks: list[Chunk]) -> list[Chunk]:
     """Return *it is on the tray, either beside A or behind B* as *it is on the tray; it is beside A or behind B*."""
     at = next((i for i, chunk in enumerate(chunks) if chunk.type == "ADVERB" and chunk.value == "either"), 0)
-    if at < 2 or chunks[at - 1].type != "COMMA" or type_at(chunks, at + 1) not in ("PREP", "ADV"):
+    if at < 2 or chunks[at - 1].type not in ("COMMA", "CUT") or type_at(chunks, at + 1) not in ("PREP", "ADV"):
         return chunks
     end = next((k for k in range(at, len(chunks)) if chunks[k].type in JOINT_TYPES - {"OR"}), len(chunks))
     first = max((k + 1 for k in range(at - 1) if chunks[k].type in JOINT_TYPES), default=0)
