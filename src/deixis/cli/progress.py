@@ -113,6 +113,8 @@ def step_bar(total: int, what: str = "experiment") -> Iterator[Callable[[str], N
     """Show a progress bar of ``total`` steps; yield a function to call with the name of each finished step."""
     with progress_bar(what) as progress:
         done = 0
+        if progress is not None:
+            progress(done, total, what)
 
         def tick(step: str) -> None:
             nonlocal done

@@ -46,6 +46,12 @@ def test_long_work_shows_its_count_without_colours(shown: Terminal, monkeypatch:
     assert "\x1b[3" not in shown.getvalue()
 
 
+def test_the_number_of_steps_is_shown_before_the_first(shown: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    with redirect_stderr(shown), step_bar(4):
+        assert until(lambda: "0/4" in shown.getvalue())
+
+
 def test_stages_show_their_name_and_number(shown: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
     with redirect_stderr(shown), stage_bar("reading", "looking", "cutting") as begin:
