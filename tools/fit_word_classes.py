@@ -16,9 +16,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from deixis.grammar.english.rewording import words_of
 from deixis.grammar.english.tagging.tagger import START, Clause, Tagger
 from deixis.grammar.english.tagging.word_classes import NOMINAL, VERBAL, WordClass
-from deixis.grammar.english.tokens import words_of
 from deixis.grammar.english.vocabulary.known_nouns import known_nouns
 from deixis.ontology.tbox import default_ontology
 

@@ -21,16 +21,11 @@ from deixis.grammar.english.clauses.readings import other_joints, settled
 from deixis.grammar.english.clauses.rewriting.ellipses import with_pairs_apart
 from deixis.grammar.english.clauses.rewriting.rewrite import rewritten
 from deixis.grammar.english.confidence import Guess
+from deixis.grammar.english.rewording import without_request, words_of
+from deixis.grammar.english.sentences import MAX_SENTENCE_WORDS, RawSentence, sentences
 from deixis.grammar.english.tagging.tagger import Tagger, Tagging
 from deixis.grammar.english.tagging.word_classes import is_known
-from deixis.grammar.english.tokens import (
-    MAX_SENTENCE_WORDS,
-    RawSentence,
-    Word,
-    sentences,
-    without_request,
-    words_of,
-)
+from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_nouns

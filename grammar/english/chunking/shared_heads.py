@@ -78,7 +78,7 @@ def with_shared_heads(words: Sequence[Word], nouns: KnownNouns) -> list[Word]:
 
     Examples
     --------
-    >>> from deixis.grammar.english.tokens import words_of
+    >>> from deixis.grammar.english.rewording import words_of
     >>> from deixis.grammar.english.vocabulary.known_nouns import known_nouns
     >>> from deixis.ontology.tbox import default_ontology
     >>> nouns = known_nouns(default_ontology().kinds)

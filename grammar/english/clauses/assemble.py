@@ -12,7 +12,7 @@ from deixis.grammar.english.clauses.joints import Segment
 from deixis.grammar.english.clauses.places import HOURS
 from deixis.grammar.english.clauses.predicates import place_left
 from deixis.grammar.english.confidence import Guess
-from deixis.grammar.english.tokens import RawSentence
+from deixis.grammar.english.sentences import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word

@@ -14,6 +14,10 @@ from deixis.grammar.english.vocabulary.nouns import SURFACES, last_word
 
 _WITH_LISTS = frozenset({"between", "among", "next_to", "near", "with", "from", "opposite"})
 """Relations whose object is often a list."""
+_OF_ITEMS = frozenset(
+    {"on", "inside", "under", "above", "below", "behind", "in_front", "left", "right", "against", "over", "touching"}
+)
+"""Relations of a thing in a list to another one, after which the list can go on."""
 _SUBORDINATE = frozenset(
     {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead", "in case"}
 )
@@ -313,18 +317,20 @@ def end_of_list(chunks: list[Chunk], at: int) -> int:
     if at and types[at - 1] in ("PREP", "OF", "WITH"):
         return at  # 'between the box and the jug with a coat on it'
     while types[i : i + 1] == ["NP"] and not (chunks[i].value.pronoun or is_place(chunks[i].value)):
+        if i > at and chunks[i].value.determiner is None and chunks[i].value.count is None:
+            return at  # 'the door to the bath, basin and bin'
         i = _after_of(types, i + 1)
-        is_placed = types[i : i + 2] == ["PREP", "NP"] and chunks[i].value.preposition.relation not in _WITH_LISTS
+        is_placed = types[i : i + 2] == ["PREP", "NP"] and chunks[i].value.preposition.relation in _OF_ITEMS
         if types[i : i + 2] == ["WITH", "NP"]:
-            i, holding = i + 2, holding + 1
-            if types[i : i + 2] == ["PREP", "NP"] and chunks[i + 1].value.pronoun == "it":
-                i += 2  # 'a plate with a napkin on it'
+            owned = types[i + 2 : i + 4] == ["PREP", "NP"] and chunks[i + 3].value.pronoun == "it"
+            i += 4 if owned else 2  # 'a plate with a napkin on it'
+            holding += 2 if owned else 1
         elif is_placed and not is_place(chunks[i + 1].value):
             i, placed = _after_of(types, i + 2), placed + 1
         else:
             bare += 1
-        if conjoined:
-            several = bare > 1 or commas > 1 or holding > 0  # not 'a cup on the tray and a jug'
+        if conjoined:  # neither 'a cup on the tray and a jug' nor 'a door with hinges and a handle'
+            several = bare > 1 or commas > 1 or holding + commas > 1
             return i if placed + holding and bare and several and types[i : i + 1] in ([], ["CUT"]) else at
         joints = types[i : i + 2]
         if joints[:1] not in (["COMMA"], ["AND"]):

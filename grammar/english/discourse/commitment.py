@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from deixis.grammar.english.tokens import DOUBT
+from deixis.grammar.english.rewording import DOUBT
 from deixis.grammar.english.tree import Mood, Sentence
 from deixis.grammar.english.vocabulary.function_words import NUMBERS, OTHER_UNITS, READY, UNITS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE

@@ -39,7 +39,7 @@ from deixis.grammar.english.discourse.mentions import SUPERLATIVES, _with_restri
 from deixis.grammar.english.discourse.references import POLES, Focus
 from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
-from deixis.grammar.english.tokens import DOUBT
+from deixis.grammar.english.rewording import DOUBT
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
 from deixis.grammar.english.vocabulary.nouns import (

@@ -156,7 +156,7 @@ def likely_length(seen: float, width: float, height: float, most: float) -> tupl
     Examples
     --------
     >>> length, spread = likely_length(0.1, 0.02, 0.008, 0.4)
-    >>> 0.15 < length < 0.2, 0.02 < spread < 0.04
+    >>> 0.15 < length < 0.2, 0.02 < spread < 0.06
     (True, True)
     >>> likely_length(0.39, 0.02, 0.008, 0.4)
     (0.39, 0.0)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from asserted_facts import MINOR
+from asserted_facts import asserted as asserted_except
 
 from deixis.grammar.english.reader import read_english
 from deixis.grammar.english.vocabulary.known_nouns import known_nouns
@@ -18,9 +20,8 @@ def read(text: str) -> Reading:
 
 
 def asserted(text: str) -> list[str]:
-    """Return the places that a text asserts, without counts, colours and contents."""
-    minor = ("count(", "colour(", "size(", "material(", "contents(", "kind(", "shape(", "state(")
-    return [str(f.content) for f in read(text).stated if f.asserted and not str(f.content).startswith(minor)]
+    """Return the places that a text asserts."""
+    return asserted_except(text, (*MINOR, "state("))
 
 
 @pytest.mark.parametrize(

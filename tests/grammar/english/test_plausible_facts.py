@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from asserted_facts import asserted
 
 from deixis.grammar.english.reader import read_english
 from deixis.grammar.english.vocabulary.known_nouns import known_nouns
@@ -16,12 +17,6 @@ def read(text: str) -> Reading:
     reading = read_english(text).reading
     assert reading is not None
     return reading
-
-
-def asserted(text: str) -> list[str]:
-    """Return the places that a text asserts, without counts, colours and contents."""
-    minor = ("count(", "colour(", "size(", "material(", "contents(", "kind(", "shape(")
-    return [str(f.content) for f in read(text).stated if f.asserted and not str(f.content).startswith(minor)]
 
 
 def asserted_if_any(text: str) -> list[str]:

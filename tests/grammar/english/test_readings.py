@@ -3,20 +3,17 @@
 from dataclasses import replace
 
 import pytest
+from asserted_facts import asserted as asserted_except
 
 from deixis.grammar.english.chunking.chunk import Chunk
 from deixis.grammar.english.clauses.readings import MAX_OTHER_JOINTS, other_joints, settled
 from deixis.grammar.english.confidence import Guess, Standing, standing
 from deixis.grammar.english.parse import parse_english
-from deixis.grammar.english.reader import read_english
 
 
 def asserted(text: str) -> list[str]:
     """Return the facts that a text asserts, without counts."""
-    reading = read_english(text).reading
-    assert reading is not None
-    shown = [str(fact.content) for fact in reading.stated if fact.asserted]
-    return [fact for fact in shown if not fact.startswith("count(")]
+    return asserted_except(text, ("count(",))
 
 
 @pytest.mark.parametrize(

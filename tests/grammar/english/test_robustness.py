@@ -13,7 +13,8 @@ from timing import processor_time_below
 from deixis.deadline import Deadline
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.reader import read_english
-from deixis.grammar.english.tokens import _CONTRASTS, _DENIALS, _RARELY, MAX_SENTENCE_LENGTH, sentences, words_of
+from deixis.grammar.english.rewording import _CONTRASTS, _DENIALS, _RARELY, words_of
+from deixis.grammar.english.sentences import MAX_SENTENCE_LENGTH, sentences
 from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence
 from deixis.grammar.errors import ScriptError, ScriptTimeError
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import pytest
+from asserted_facts import asserted as asserted_except
 
 from deixis.grammar.english.reader import read_english
 
 
 def asserted(text: str) -> list[str]:
     """Return the facts that a text asserts, without counts and sizes."""
-    reading = read_english(text).reading
-    assert reading is not None
-    found = [str(stated.content) for stated in reading.stated if stated.asserted]
-    return [fact for fact in found if not fact.startswith(("count(", "size("))]
+    return asserted_except(text, ("count(", "size("))
 
 
 @pytest.mark.parametrize(

@@ -3,18 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from asserted_facts import asserted
 
 from deixis.grammar.english.reader import read_english
-
-MINOR = ("count(", "colour(", "size(", "material(", "contents(", "kind(", "shape(")
-"""Beginnings of facts that say no place."""
-
-
-def asserted(text: str) -> list[str]:
-    """Return the places and states that a text asserts."""
-    reading = read_english(text).reading
-    assert reading is not None
-    return [str(f.content) for f in reading.stated if f.asserted and not str(f.content).startswith(MINOR)]
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from asserted_facts import asserted as asserted_except
 from bench_english import Score, written_facts, written_texts, written_traps
 
 from deixis.grammar.english.reader import read_english
@@ -48,10 +49,7 @@ def test_notation_of_facts_reads_signs_parts_and_names() -> None:
 
 def asserted(text: str) -> list[str]:
     """Return the facts that a text asserts, without counts, colours and sizes."""
-    reading = read_english(text).reading
-    assert reading is not None
-    minor = ("count(", "colour(", "size(", "material(", "contents(", "kind(")
-    return [str(fact.content) for fact in reading.stated if fact.asserted and not str(fact.content).startswith(minor)]
+    return asserted_except(text, ("count(", "colour(", "size(", "material(", "contents(", "kind("))
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from deixis.grammar.english.rewording import words_of
 from deixis.grammar.english.tagging.tagger import MAX_LOSS, Tagger
 from deixis.grammar.english.tagging.word_classes import FINITE, NOMINAL, possible_classes
-from deixis.grammar.english.tokens import words_of
 from deixis.grammar.english.vocabulary.known_nouns import known_nouns
 from deixis.ontology.tbox import default_ontology
 
