@@ -468,7 +468,7 @@ class Evidence:
 
     @property
     def _is_plan(self) -> bool:
-        """Whether the scene has boxes in metres without heights, so that it is seen from above."""
+        """True if the boxes are in metres and have no heights, so that the scene is seen from above."""
         return self.metric and self.scene.boxes is not None and self.scene.boxes.shape[2] == 2
 
     def _may_be_own(self, relation: Relation) -> bool:
