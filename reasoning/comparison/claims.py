@@ -271,7 +271,7 @@ class _Measures:
 
     def _where(self, subject: int) -> str:
         x, y = lean_on_surface(self.boxes, self.degrees.surface)[subject]
-        return f"it is {x:.0%} of the way from left to right and {y:.0%} from near to far"
+        return f"{x:.0%} of the free width is left of it, and {y:.0%} of the free depth is nearer than it"
 
     def _place(self, claim: Claim, subject: int, others: list[int]) -> Measured:
         if not others:

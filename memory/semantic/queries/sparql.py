@@ -301,10 +301,13 @@ def _closed(iri: str) -> str | None:
 
 
 def _terms_of(prefix: str, store: ox.Store) -> set[str]:
-    """Return the local names of the vocabulary of Deixis in a memory, or of a standard one."""
+    """Return the local names of the vocabulary of Deixis (that of a memory and all nouns), or of a standard one."""
     if prefix == "dx":
+        from deixis.ontology.tbox import default_ontology
+
         subjects = {quad.subject for quad in store.quads_for_pattern(None, None, None, graph_iri(GraphName.ONTOLOGY))}
         known = {subject.value for subject in subjects if isinstance(subject, ox.NamedNode)}
+        known |= {kind.iri for senses in default_ontology().kinds.every_word.values() for kind in senses}
         return {value.removeprefix(BASE) for value in known if value.startswith(BASE)}
     if prefix == "dxg":
         return {graph.value.removeprefix(GRAPHS) for graph in READABLE}
@@ -540,7 +543,16 @@ def _syntax_error(text: _Text, message: str) -> QueryError:
     opened = None if text.text[offset:].strip() else _unclosed(text.text)
     if opened is not None:
         return text.error(opened.start, f"syntax error: the query ends before this '{opened.text}' is closed")
-    return text.error(offset, f"syntax error{_expected(what)}")
+    return text.error(offset, f"syntax error{_unescaped(text.text, offset) or _expected(what)}")
+
+
+def _unescaped(text: str, offset: int) -> str:
+    """Return the advice for a prefixed name with plain slashes at an offset, empty if there is none."""
+    for name in re.finditer(r"(?<![\w:/])\w+:[\w.%-]+(?:/[\w.%-]+)+(?![\w:])", text):
+        if name.start() <= offset <= name.end():
+            written = name.group().replace("/", r"\/")
+            return rf"; write '/' in a prefixed name as '\/': {written}"
+    return ""
 
 
 def _unclosed(text: str) -> Token | None:

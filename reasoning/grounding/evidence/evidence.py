@@ -37,7 +37,7 @@ from deixis.reasoning.grounding.evidence.properties.labels import Label, classes
 from deixis.reasoning.grounding.evidence.properties.unary import LABEL_ERROR, label_ratios, size_evidence
 from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees, frame_shares, log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, SHIPPED, Meaning, shipped_models
-from deixis.reasoning.grounding.evidence.words.pair_features import OWN_WORDS
+from deixis.reasoning.grounding.evidence.words.pair_features import OWN_WORDS, STATURE_WORDS
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.memory_budget import different_facts
 
@@ -372,6 +372,7 @@ class Evidence:
                 names=self.scene.names,
                 everything=None if self.whole is None else self.whole.boxes,
                 poses=self.scene.poses,
+                is_plan=self._is_plan,
                 deadline=self.deadline.earlier(laying_out),
             )
             if len(boxes) <= MAX_KEPT_THINGS:
@@ -454,7 +455,9 @@ class Evidence:
         degrees, crisp = self._word_degrees, self.description.vocabulary.degrees
         best, undecided = np.zeros((n, n)), np.ones((n, n), dtype=np.bool_)
         for relation in relations:
-            undecided &= relation.by_model and degrees.undecided(relation.word)
+            undecided &= relation.by_model and (
+                degrees.undecided(relation.word) | (self._is_plan and relation.word in STATURE_WORDS)
+            )
             by_name = np.where(self.scene.names >= 0, crisp[relation.index][self.scene.names], 0.0)
             if self._may_be_own(relation):  # it holds in the viewer's frame, or in that of the object
                 by_name = np.maximum(by_name, degrees.held_by_front(relation.word))
@@ -462,6 +465,11 @@ class Evidence:
         if not positive:
             return np.where((best < HELD_FROM) | undecided, 1.0, 0.0)
         return np.where(undecided, 1.0, np.where(best >= HELD_FROM, best, 0.0))
+
+    @property
+    def _is_plan(self) -> bool:
+        """True if the boxes are in metres and have no heights, so that the scene is seen from above."""
+        return self.metric and self.scene.boxes is not None and self.scene.boxes.shape[2] == 2
 
     def _may_be_own(self, relation: Relation) -> bool:
         """Return whether a word that is not decided by its model alone has a frame of some thing of the scene."""

@@ -37,8 +37,8 @@ def checked(claim: Claim, boxes: np.ndarray | None = BOXES, metric: bool = True)
 @pytest.mark.parametrize(
     ("text", "verdict", "measured"),
     [
-        ("cup at the far right corner", "satisfied", "92% of the way from left to right"),
-        ("cup at the near edge", "violated", "91% from near to far"),
+        ("cup at the far right corner", "satisfied", "92% of the free width is left of it"),
+        ("cup at the near edge", "violated", "91% of the free depth is nearer than it"),
         ("grape at the middle of the plate", "satisfied", "on plate, it is 50% of the way"),
         ("cup at the left end of the plate", "violated", "it is 17.09 cm away from plate"),
         ("fork about 2 cm from plate", "satisfied", "2 cm from plate"),

@@ -37,6 +37,7 @@ from deixis.reasoning.geometry.rectangle import box_relations, require_boxes
 from deixis.reasoning.grounding.evidence.facts.literalness import LITERAL, LITERAL_PRIOR, literal_share
 from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees, log_likelihood_ratio, saying_degree
 from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, shipped_models
+from deixis.reasoning.grounding.evidence.words.pair_features import STATURE_WORDS
 from deixis.reasoning.grounding.matching.problem import Problem, empty_tables
 
 Array = NDArray[np.float64]
@@ -103,6 +104,13 @@ def compared_facts(
     distinct = sorted(set(keys))
     places = {key: place for place, key in enumerate(distinct)}
     return edges, _ends(description, edges), np.array([places[key] for key in keys], dtype=np.int64), distinct
+
+
+def _without_stature(said: Said, vocabulary: Relations) -> Said:
+    """Return the content of a fact with weight 0 if one of its words compares heights, which a plan does not show."""
+    mask, positive, weight = said
+    about_stature = any(relation.word in STATURE_WORDS for relation in vocabulary.members(mask))
+    return mask, positive, 0.0 if about_stature else weight
 
 
 def fact_tables(
@@ -182,6 +190,7 @@ class FactEvidence:
         names: NDArray[np.integer] | None = None,
         everything: NDArray[np.float64] | None = None,
         poses: Poses | None = None,
+        is_plan: bool = False,
         deadline: Deadline = Deadline.never(),
     ) -> FactEvidence:
         """Build the evidence of a description for boxes.
@@ -202,6 +211,8 @@ class FactEvidence:
             All boxes of the scene, shape (n, 2, d), where ``boxes`` are only some of them.
         poses
             Poses of the n2 things; None for axes along the sides of the boxes, and no fronts.
+        is_plan
+            Whether the boxes are seen from above, without heights: *taller* and *shorter* then carry no information.
         deadline
             End of the time limit.
 
@@ -220,6 +231,8 @@ class FactEvidence:
             Raised by the methods only: a word has no model, or a weight is outside 0 to 1.
         """
         edges, ends, kinds, distinct = compared_facts(description)
+        if is_plan:
+            distinct = [_without_stature(said, description.vocabulary) for said in distinct]
         order = np.zeros(0, dtype=np.intp)
         if len(boxes):
             order = np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1])

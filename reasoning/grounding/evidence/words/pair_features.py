@@ -403,6 +403,9 @@ GRADED_VIEWS: Mapping[str, Callable[[PairGeometry], View]] = {
 offset across, ``lift`` a vertical gap, ``depth`` the share of the object's height that the subject reaches down, and
 ``floor`` the height of the subject's underside above that of the object."""
 
+STATURE_WORDS = frozenset({"taller", "shorter"})
+"""Words that compare the heights of things. A photograph shows heights on y; boxes seen from above do not show them."""
+
 REVERSED = {
     "below": "above",
     "containing": "inside",

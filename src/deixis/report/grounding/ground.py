@@ -318,7 +318,11 @@ def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
             changes = {name: thing for name, thing in changes.items() if name not in group}
     place = f" ({pivotal.fact.source})" if pivotal.fact.source else ""
     would = [f"{name} would be {thing or 'left out'}" for name, thing in changes.items()]
-    if pivotal.unsettled:
+    if len(pivotal.unsettled) > 1 and set(pivotal.unsettled) == {
+        n for n, match in found.matches.items() if match.decided
+    }:
+        would.append("no match would be decided")
+    elif pivotal.unsettled:
         would.append(f"{', '.join(pivotal.unsettled)} would not be decided")
     if pivotal.settled:
         would.append(f"{', '.join(pivotal.settled)} would be decided")

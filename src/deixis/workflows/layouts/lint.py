@@ -215,8 +215,9 @@ def _name_findings(script: Script) -> Iterator[Finding]:
                 message, hint = f"'{name}' is one letter away from '{kind}'", f"did you mean '{kind}'?"
                 yield Finding("N001", mention.source, message, hint, kind if mention.name == name else None)
             else:
-                hint = f"declare its kind, as in: {name} is a plate"
-                yield Finding("N003", mention.source, f"the kind of '{name}' is unknown", hint)
+                message = f"the kind of '{name}' is unknown, so it has no usual size"
+                hint = "declare its kind if it is one of docs/reference/ontology.md, as in: soup_spoon is a spoon"
+                yield Finding("N003", mention.source, message, hint)
     stated = script.stated if script.reading is None else _connecting(script)
     related = {plain_name(name) for content in stated for name in _ends(content)}
     for name, mention in first.items():

@@ -179,7 +179,7 @@ def test_a_time_limit_of_zero_gives_an_undecided_answer(tmp_path: Path, engine: 
     boxes = [
         {"id": f"o{i}", "min": [i * 37 % 20, i * 11 % 20], "max": [i * 37 % 20 + 2, i * 11 % 20 + 2]} for i in range(20)
     ]
-    scene = write(tmp_path / "s.scene.json", json.dumps({"objects": boxes}))
+    scene = write(tmp_path / "s.scene.json", json.dumps({"objects": boxes}), encoding="utf-8")
     code, out, err = deixis("ground", script, scene, "--time-limit", "0", "--json", "--engine", engine)
     data = json.loads(out)
     assert (code, err) == (3, "")
@@ -296,3 +296,13 @@ def test_an_undecided_match_lists_an_alternative() -> None:
     _, out, _ = deixis("ground", SCRIPT1, SCENE)
     rows = [line for line in out.splitlines()[:12] if float(line.split()[2]) < 0.99]
     assert rows and all(" or " in row for row in rows)
+
+
+def test_a_fact_on_which_all_matches_depend_gets_a_short_line(tmp_path: Path) -> None:
+    script, scene = tmp_path / "pair.layout", tmp_path / "pair.scene.json"
+    script.write_text("fork facing plate; fork higher than plate; fork leaning against plate", encoding="utf-8")
+    fork = {"id": "o1", "label": "fork", "min": [0, 0], "max": [3, 20]}
+    plate = {"id": "o2", "label": "plate", "min": [6, 0], "max": [29, 23]}
+    scene.write_text(json.dumps({"unit": "cm", "objects": [fork, plate]}), encoding="utf-8")
+    _, out, _ = deixis("ground", script, scene)
+    assert f"Without facing(fork, plate) ({script}:1:1): no match would be decided." in out

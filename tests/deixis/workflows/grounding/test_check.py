@@ -11,6 +11,7 @@ import rdflib
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import deixis
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.english.reader import read_english
@@ -43,6 +44,16 @@ def swapped(scene: Scene, a: str, b: str) -> Scene:
 
 def roles(checked: Check, verdict: RoleVerdict) -> set[str]:
     return {entry.role for entry in checked.table.of(verdict)}
+
+
+@pytest.mark.parametrize(("unit", "misplaced"), [("cm", 0), ("px", 1)])  # a photograph shows heights on y
+def test_boxes_seen_from_above_do_not_show_which_is_taller(unit: str, misplaced: int) -> None:
+    things = [
+        {"id": "o1", "min": [0, 0], "max": [3, 20], "label": "fork"},
+        {"id": "o2", "min": [6, 0], "max": [29, 23], "label": "plate"},
+    ]
+    found = check(deixis.read_scene({"unit": unit, "objects": things}), "fork left of plate; fork taller than plate")
+    assert len(roles(found, RoleVerdict.MISPLACED)) == misplaced
 
 
 def test_a_table_that_is_laid_right_has_nothing_wrong_with_it() -> None:

@@ -144,6 +144,11 @@ def test_english_names_are_compared_at_their_words() -> None:
     assert english_codes(text, "N") == [("N001", 36), ("N003", 64), ("N002", 92)]
 
 
+def test_the_hint_for_an_unknown_kind_names_the_page_of_kinds() -> None:
+    (finding,) = deixis.lint(deixis.read_script(text="fork left of thingummy"), select=("N003",)).findings
+    assert finding.hint is not None and "docs/reference/ontology.md" in finding.hint
+
+
 def test_phrases_that_are_not_understood_are_warnings() -> None:
     assert english_codes("The cup is left of the jug for the guests.", "E") == [("E001", 28)]
 

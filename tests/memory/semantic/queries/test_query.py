@@ -217,6 +217,7 @@ PLACES = [
     ("SELECT * {?s ?p ?o} LIMIT x", 1, 27, "syntax error"),
     ("SELECT * {\n  ?s ?p ?o\n", 1, 10, "the query ends before this '{' is closed"),
     ("SELECT * {?s ?p ?o FILTER(?o > 1 ", 1, 26, "the query ends before this"),
+    ("SELECT ?o { lx:lesson/tea-1 ?p ?o }", 1, 22, r"write '/' in a prefixed name as '\/': lx:lesson\/tea-1"),
     ("S\\u0045LECT * { ?s SERVICE ?o }", 1, 20, "SERVICE is refused"),
     ("\tASK { ?s foo:a ?o }", 1, 11, "foo"),
 ]
@@ -224,8 +225,9 @@ PLACES = [
 
 @pytest.mark.parametrize(("query", "line", "column", "message"), PLACES)
 def test_an_error_points_at_the_place(memory: SemanticMemory, query: str, line: int, column: int, message: str) -> None:
-    with pytest.raises(QueryError, match=message) as caught:
+    with pytest.raises(QueryError) as caught:
         memory.query(query)
+    assert message in str(caught.value)
     head, shown, caret = str(caught.value).split("\n")
     assert head.startswith(f"query:{line}:{column}: ")
     assert shown.strip() == query.split("\n")[line - 1].strip()

@@ -42,6 +42,7 @@ def test_the_ontology_gives_labels_without_naming_its_graph(taught: deixis.Sessi
             "query:1:18: the vocabulary has no term 'owl:class'; did you mean 'owl:Class'?",
         ),
         ("SELECT ?x { ?x a dx:fork }", "query:1:18: the vocabulary has no term 'dx:fork'; did you mean 'dx:Fork'?"),
+        ("SELECT ?x { ?x a dx:ruler }", "did you mean 'dx:Ruler'?"),
         ("SELECT ?x { ?x dx:inLayuot ?y }", "did you mean 'dx:inLayout'?"),
         ("ASK { ?x a <https://w3id.org/deixis/onto#Layuot> }", "did you mean 'dx:Layout'?"),
         ("PREFIX o: <https://w3id.org/deixis/onto#> ASK { ?x a o:Xyzzy }", "no term 'dx:Xyzzy'; docs/"),
@@ -51,6 +52,10 @@ def test_an_unknown_term_is_an_error_with_the_nearest(taught: deixis.Session, qu
     with pytest.raises(QueryError) as raised:
         taught.query(query)
     assert message in str(raised.value)
+
+
+def test_a_noun_that_no_lesson_uses_is_a_known_term(taught: deixis.Session) -> None:
+    assert taught.query("SELECT ?x { ?x a dx:BarMat }").remarks() == (EMPTY_ANSWER,)
 
 
 def test_a_term_that_the_memory_uses_is_accepted(memory: SemanticMemory) -> None:
