@@ -179,7 +179,7 @@ def test_a_time_limit_of_zero_gives_an_undecided_answer(tmp_path: Path, engine: 
     boxes = [
         {"id": f"o{i}", "min": [i * 37 % 20, i * 11 % 20], "max": [i * 37 % 20 + 2, i * 11 % 20 + 2]} for i in range(20)
     ]
-    scene = write(tmp_path / "s.scene.json", json.dumps({"objects": boxes}), encoding="utf-8")
+    scene = write(tmp_path / "s.scene.json", json.dumps({"objects": boxes}))
     code, out, err = deixis("ground", script, scene, "--time-limit", "0", "--json", "--engine", engine)
     data = json.loads(out)
     assert (code, err) == (3, "")
