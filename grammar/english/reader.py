@@ -70,23 +70,27 @@ def read_english(
     """
     ontology = ontology or default_ontology()
     sentences, is_whole = parse_until(text, ontology, deadline.share(_SHARE_OF_PARSING))
-    if is_whole:
-        return _script_of(text, file, ontology, sentences)
+    discourse = Discourse(text, sentences, dict(ontology.hedges), known_nouns(ontology.kinds))
+    drafts = discourse.read(deadline.share(_SHARE_OF_PARSING))
+    is_whole = is_whole and discourse.sentences == sentences
     try:
-        read = _script_of(text, file, ontology, sentences) if sentences else None
+        script = _script_of(text, file, ontology, discourse, drafts) if is_whole or sentences else None
     except ScriptError:
-        read = None
-    raise late(sentences, read)
+        if is_whole:
+            raise
+        script = None
+    if script is None or not is_whole:
+        raise late(discourse.sentences, script)
+    return script
 
 
 _SHARE_OF_PARSING = 0.6
-"""Share of a time limit that parsing may take, so that what was parsed can be read as facts."""
+"""Share of a time limit that parsing may take, and reading facts of what is left, so that they can be written."""
 
 
-def _script_of(text: str, file: str, ontology: Ontology, sentences: tuple[Sentence, ...]) -> Script:
-    """Return the script of the facts that parsed sentences state."""
-    discourse = Discourse(text, sentences, dict(ontology.hedges), known_nouns(ontology.kinds))
-    drafts = discourse.read()
+def _script_of(text: str, file: str, ontology: Ontology, discourse: Discourse, drafts: list[FactDraft]) -> Script:
+    """Return the script of the facts that the sentences of a discourse state."""
+    sentences = discourse.sentences
     writer = _Writer(text, file, ontology, discourse)
     read = [fact for draft in drafts for fact in writer.facts(draft)]
     stated = tuple(fact for fact in read if _standing(fact) is not Standing.LEFT_OUT)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
+from deixis.deadline import Deadline
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import (
     AT_MOST,
@@ -126,8 +127,13 @@ _UNREAL = (UNREAL.search, SAID_AFTER.search, FRAMED.search, UNSURE.search, FUTUR
 class Discourse(Statements):
     """Reader of parsed sentences, in order; it collects drafts of facts."""
 
-    def read(self) -> list[Draft]:
-        """Read all sentences; return the drafts of what they state.
+    def read(self, deadline: Deadline = Deadline.never()) -> list[Draft]:
+        """Read the sentences; return the drafts of what they state.
+
+        Parameters
+        ----------
+        deadline
+            End of the time limit; the sentences that were not read until then are left out of ``sentences``.
 
         Returns
         -------
@@ -135,6 +141,9 @@ class Discourse(Statements):
             Facts and claims about entities, which have no names yet, in the order of the text.
         """
         for number, sentence in enumerate(self.sentences):
+            if deadline.passed:
+                self.sentences = self.sentences[:number]
+                break
             self.references.sentence = number
             self.references.start, self.end = sentence.span
             self.references.lost = [problem.span for problem in sentence.misunderstood]

@@ -11,12 +11,15 @@ from hypothesis import strategies as st
 from timing import processor_time_below
 
 from deixis.deadline import Deadline
+from deixis.grammar.english.discourse.discourse import Discourse
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.reader import read_english
 from deixis.grammar.english.rewording import _CONTRASTS, _DENIALS, _RARELY, words_of
 from deixis.grammar.english.sentences import MAX_SENTENCE_LENGTH, sentences
 from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence
+from deixis.grammar.english.vocabulary.known_nouns import known_nouns
 from deixis.grammar.errors import ScriptError, ScriptTimeError
+from deixis.ontology.tbox import default_ontology
 
 WORDS = st.sampled_from(
     [
@@ -190,8 +193,8 @@ class PassingDeadline:
         return self.questions < 0
 
     def share(self, fraction: float) -> PassingDeadline:
-        """Return this deadline."""
-        return self
+        """Return a deadline that passes after as many questions."""
+        return PassingDeadline(self.questions)
 
 
 def test_what_was_read_at_a_time_limit_is_kept() -> None:
@@ -200,6 +203,13 @@ def test_what_was_read_at_a_time_limit_is_kept() -> None:
         read_english(text, deadline=cast("Deadline", PassingDeadline(4)))
     assert late.value.read is not None
     assert [str(fact) for fact in late.value.read.facts] == ["left(fork, cup)"]
+
+
+def test_reading_facts_ends_at_the_time_limit() -> None:
+    text = "The cup is on the mat. The fork is left of the cup. The jug is behind the cup."
+    discourse = Discourse(text, parse_english(text), {}, known_nouns(default_ontology().kinds))
+    drafts = discourse.read(cast("Deadline", PassingDeadline(2)))
+    assert [draft.relation for draft in drafts] == ["on", "left"] and len(discourse.sentences) == 2
 
 
 def test_a_time_limit_before_the_first_fact_keeps_nothing() -> None:
