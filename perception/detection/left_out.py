@@ -181,7 +181,7 @@ def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[st
     on
         Mask of the n points on the table or its objects, shape (n,).
     settings
-        Side of a cell in pixels, and the share of empty cells that is worth a note.
+        Side of a cell in pixels, and the shares of empty cells and of empty pixels that are worth a note.
 
     Returns
     -------
@@ -202,6 +202,9 @@ def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[st
     usual = float(np.median(total[table]))
     empty = whole & (total < 0.2 * usual)
     share = empty.sum() / max(int(whole.sum()), 1)  # an image of a few cells may have no whole one
+    unfilled = 1 - usual / settings.hole_cell**2
+    if unfilled > settings.max_unfilled_share:
+        return (f"{unfilled:.0%} of the pixels on the table have no depth",)
     if share <= settings.max_hole_share:
         return ()
     return (f"{share:.0%} of the visible table has no depth: shiny, dark or transparent objects there are missing",)

@@ -676,6 +676,9 @@ class NoteSettings(_Thresholds):
     max_hole_share: float = 0.1
     """Maximum fraction of the cells of a table without depth; more give a note. Tested by
     test_unreported_points_get_a_note."""
+    max_unfilled_share: float = 0.25
+    """Maximum fraction of the pixels without depth in the usual cell of a table; in Kinect images, the usual cell is
+    full. Tested by test_scattered_pixels_without_depth_get_a_note."""
     min_usual_length: float = 0.03
     """Minimum median length of the objects, in metres. Tested by test_unreported_points_get_a_note."""
     max_usual_length: float = 0.6

@@ -58,6 +58,14 @@ def test_a_hole_in_the_depth_of_a_table_gets_a_note(boxes_seen: Look) -> None:
     assert any("has no depth: shiny, dark or transparent" in note for note in notes)
 
 
+def test_scattered_pixels_without_depth_get_a_note(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE])
+    points = cloud.points.copy()
+    points[np.random.default_rng(0).random(len(points)) < 0.5] = np.nan
+    notes = detect(replace(cloud, points=points)).notes
+    assert any("of the pixels on the table have no depth" in note for note in notes)
+
+
 @pytest.mark.parametrize(("axis", "name"), [(0, "rows"), (1, "columns")])
 def test_lines_without_depth_get_a_note(boxes_seen: Look, axis: int, name: str) -> None:
     cloud = boxes_seen([CUBE])
