@@ -18,6 +18,7 @@ _OF_ITEMS = frozenset(
     {"on", "inside", "under", "above", "below", "behind", "in_front", "left", "right", "against", "over", "touching"}
 )
 """Relations of a thing in a list to another one, after which the list can go on."""
+_BEFORE_OBJECTS = frozenset({"BE", "TVERB"})
 _SUBORDINATE = frozenset(
     {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead", "in case"}
 )
@@ -181,16 +182,12 @@ def _verbless_inversion(types: list[str], at: int) -> bool:
     """Return True for a place and its thing without a verb: *behind it the cup*, *behind it, half hidden, a cup*."""
     objects = 0
     while types[at : at + 2] == ["PREP", "NP"] and objects == 0:
-        at, objects = at + 2, 1
-        while types[at : at + 2] == ["OF", "NP"]:
-            at += 2
+        at, objects = _after_of(types, at + 2), 1
     if types[at : at + 3] in (["COMMA", "PART", "COMMA"], ["COMMA", "ADJP", "COMMA"]):
         at += 3
     if not objects or types[at : at + 1] != ["NP"]:
         return False
-    at += 1
-    while types[at : at + 2] == ["OF", "NP"]:
-        at += 2
+    at = _after_of(types, at + 1)
     return at >= len(types) or types[at] in JOINT_TYPES
 
 
@@ -221,9 +218,7 @@ def _subject_follows(
         i += 1
     if kinds & {"AND", "OR"} and _lists_objects(types, start, at):
         return False
-    after = end + 1
-    while types[after : after + 2] == ["OF", "NP"]:
-        after += 2
+    after = _after_of(types, end + 1)
     if {"COMMA", "AND"} <= kinds and types[after : after + 2] == ["AND", "NP"]:
         after += 2  # 'the forks go on the left, and knives and spoons on the right'
     following = types[after] if after < len(types) else ""
@@ -252,7 +247,12 @@ def _subject_follows(
         opposite = _is_opposite(chunks, start, at, end + 3)
         if opposite or kinds == {"COMMA"}:
             return opposite
-    if complete and kinds == {"COMMA"} and following == "PREP" and _within_list(chunks, types, start, at):
+    if (
+        complete
+        and kinds == {"COMMA"}
+        and following == "PREP"
+        and is_within_list(chunks, at, start + 1, _BEFORE_OBJECTS)
+    ):
         return False  # 'the shelf holds a mug, a bar on a dish and a comb'
     shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
     if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
@@ -291,31 +291,37 @@ def _lists_objects(types: list[str], start: int, at: int) -> bool:
     return objects.count("COMMA") > 0 and objects[:1] == ["NP"] and set(objects) <= {"NP", "OF", "COMMA", "AND", "OR"}
 
 
-def _within_list(chunks: list[Chunk], types: list[str], start: int, at: int) -> bool:
-    """Return True if a joint is in a list of things, some with their places, that follows a verb."""
-    firsts = (i for i in range(start + 1, at) if types[i] == "NP" and types[i - 1] in ("BE", "TVERB"))
-    return any(end_of_list(chunks, first) > at for first in firsts)
-
-
-def end_of_list(chunks: list[Chunk], at: int) -> int:
-    """Return the end of a list of things of which some have places: *a mug, a bar on a dish, a comb and a jar*.
+def is_within_list(chunks: list[Chunk], at: int, start: int = 0, after: frozenset[str] | None = None) -> bool:
+    """Return True for a joint in a list of things of which some have places: *a mug, a bar on a dish and a comb*.
 
     Parameters
     ----------
     chunks
         Chunks of the sentence.
     at
-        Index of the first thing.
+        Index of the joint.
+    start
+        Index of the first chunk at which the list can begin.
+    after
+        Types of the chunks after which the list can begin; by default, any but those before the object of a phrase.
 
     Returns
     -------
-    int
-        Index after the last thing; ``at`` where there is no such list, or where each thing has its own place.
+    bool
+        False where there is no such list, or where each thing has its own place.
     """
     types = [chunk.type for chunk in chunks]
+    for first in range(start, at):
+        before = types[first - 1] if first else ""
+        begins = before not in ("PREP", "OF", "WITH") if after is None else before in after
+        if types[first] == "NP" and begins and _end_of_list(chunks, types, first) > at:
+            return True  # not 'between the box and the jug with a coat on it'
+    return False
+
+
+def _end_of_list(chunks: list[Chunk], types: list[str], at: int) -> int:
+    """Return the end of a list of things that begins here; ``at`` where there is none."""
     i, bare, placed, holding, commas, conjoined = at, 0, 0, 0, 0, False
-    if at and types[at - 1] in ("PREP", "OF", "WITH"):
-        return at  # 'between the box and the jug with a coat on it'
     while types[i : i + 1] == ["NP"] and not (chunks[i].value.pronoun or is_place(chunks[i].value)):
         if i > at and chunks[i].value.determiner is None and chunks[i].value.count is None:
             return at  # 'the door to the bath, basin and bin'
@@ -349,11 +355,9 @@ def _after_of(types: list[str], at: int) -> int:
 
 def _objects_alone(chunks: list[Chunk], types: list[str], start: int, at: int) -> bool:
     """Return True for a command that has its objects and no place yet: *store four mugs*, not *set the table*."""
-    objects = chunks[start + 1 : at]
-    placed = any(last_word(c.value.head) in SURFACES for c in objects if c.type == "NP")
-    return types[start] == "PUT" and types[start + 1 : at].count("NP") > 0 and set(types[start + 1 : at]) <= {
-        "NP", "OF", "COMMA"
-    } and not placed  # fmt: skip
+    objects = [chunk for chunk in chunks[start + 1 : at] if chunk.type == "NP"]
+    alone = types[start] == "PUT" and bool(objects) and set(types[start + 1 : at]) <= {"NP", "OF", "COMMA"}
+    return alone and not any(last_word(chunk.value.head) in SURFACES for chunk in objects)
 
 
 def _is_opposite(chunks: list[Chunk], start: int, at: int, place: int) -> bool:
@@ -674,8 +678,7 @@ def classify(segment: Segment) -> list[Chunk]:
                 kind = "OJ"  # 'a candle between them, and a bottle …'
             if kind == "NJ" and _lists_places(source, found, kinds, end, segment.link):
                 kind = "OJ"
-            in_list = any(types[k] == "NP" and end_of_list(source, k) > i for k in range(i))
-            if kind == "NJ" and in_list and found[0].type != "PUT":
+            if kind == "NJ" and found[0].type != "PUT" and is_within_list(source, i):
                 kind = "LJ"
             if (
                 kind == "NJ"
@@ -710,9 +713,7 @@ def _lists_places(source: list[Chunk], found: list[Chunk], kinds: set[str], at: 
         or any(kind in FINITE or kind in ("REL", "WITH") for kind in types)
     ):
         return False
-    after = at + 1
-    while [chunk.type for chunk in source[after : after + 2]] == ["OF", "NP"]:
-        after += 2
+    after = _after_of([chunk.type for chunk in source], at + 1)
     tucked = [c.type for c in source[after : after + 2]] == ["PART", "PREP"] and source[after].value.kind == "posture"
     if not tucked and [chunk.type for chunk in source[after : after + 1]] not in (["PREP"], ["ADV"]):
         return False
@@ -771,9 +772,7 @@ def _kind(
         if source[end].value.negated:
             nominal = any(a == "BE" and b == "NP" for a, b in pairwise(before))
             return "OJ" if nominal or not any(k in FINITE or k == "PUT" for k in before) else "NJ"
-        placed = end + 1
-        while types[placed : placed + 2] == ["OF", "NP"]:
-            placed += 2
+        placed = _after_of(types, end + 1)
         owner = source[end].value.owner
         own = owner is not None and owner.pronoun in ("it", "they") and kinds == {"COMMA"}
         if own and not PREDICATES.isdisjoint(types[placed : placed + 1]):

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from deixis.grammar.english.chunking.chunk import Chunk
-from deixis.grammar.english.clauses.joints import end_of_list
+from deixis.grammar.english.clauses.joints import is_within_list
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence, Span
 
@@ -48,7 +48,7 @@ def other_joints(chunks: list[Chunk]) -> Iterator[tuple[list[Chunk], bool]]:
 def _in_list(chunks: list[Chunk], at: int) -> bool:
     """Return True for a comma between bare noun phrases of a list: *a drum, a doll and a kite*, *cup, jug, tin*."""
     types = [chunk.type for chunk in chunks]
-    if any(end_of_list(chunks, i) > at for i in range(at) if types[i] == "NP"):
+    if is_within_list(chunks, at):
         return True  # also 'a mug, a bar on a dish and a comb'
     if types[at : at + 2] != ["COMMA", "NP"] or at == 0 or types[at - 1] != "NP":
         return False
