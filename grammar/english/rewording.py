@@ -270,6 +270,22 @@ def _without_settings(words: list[Word]) -> None:
         del words[: after if named else 0]
 
 
+def _read_viewpoint(words: list[Word]) -> None:
+    """Read *the bench is seen from the stool* as *seen from the stool*, which says nothing about the bench."""
+    norms = [word.norm for word in words]
+    seen = next((i for i in range(len(norms) - 1) if norms[i] in _SEEN and norms[i + 1] in ("from", "by")), 0)
+    before = [norm for norm in norms[:seen] if norm not in _MEANT]
+    if before and before[-1] in IS_FORMS and len(before) <= MAX_ASIDE_WORDS and not _UNMEANT & set(norms[:-1]):
+        del words[:seen]
+
+
+_SEEN = frozenset({"seen", "viewed"})
+_MEANT = frozenset({"all", "always", "as", "described", "given", "here", "meant", "stated", "taken"})
+"""Words that may stand between a form of *be* and *seen from*."""
+_UNMEANT = frozenset({",", "not", *MODALS})
+"""Words of sentences that say more, or from where something can be seen."""
+
+
 def _read_facing_commands(words: list[Word]) -> None:
     """Read *face the sofa toward the window* as *turn the sofa toward the window*."""
     start = next((i for i, word in enumerate(words) if word.norm not in ADVERBS | HEDGES), 0)
@@ -702,6 +718,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_setups(found)
     _without_asides_in_verbs(found)
     _without_settings(found)
+    _read_viewpoint(found)
     _read_facing_commands(found)
     _read_fractions(found)
     _without_cleft(found)

@@ -168,7 +168,10 @@ class Discourse(Statements):
         return self.drafts
 
     def _other_viewpoint(self, sentence: Sentence) -> str | None:
-        """Return the words by which a sentence speaks from another place than the viewer's: *seen from the door*."""
+        """Return the words by which a sentence speaks from another place than the viewer's: *seen from the door*.
+
+        A sentence that only states a viewpoint states that of the whole text.
+        """
         at = None if sentence.viewpoint is None else sentence.viewpoint.at
         if sentence.viewpoint is None or at is None or not at.head:
             return None
@@ -176,6 +179,10 @@ class Discourse(Statements):
         here = owner is not None and owner.pronoun in VIEWER_WORDS and not owner.head
         if here or last_word(at.head) in PEOPLE | {"viewer"}:
             return None  # 'from my side of the table'
+        if self.seen_from is None and not sentence.clauses and sentence.fragment is None:
+            self.seen_from = at.head  # 'The table is seen from the door.'
+        if at.head == self.seen_from:
+            return None
         return " ".join(self.text[slice(*sentence.viewpoint.span)].strip(" ,").split())
 
     def _focus_on_label(self, number: int) -> None:

@@ -66,6 +66,9 @@ MIN_SHORTLISTED, PAIRS_PER_SECOND = 10, 4e5
 """Minimum number of things per object at which a shortlist pays off, and approximate number of pairs of things that
 grounding processes in a second."""
 
+MAX_LISTED = 3
+"""Maximum number of facts that a note lists."""
+
 Stage = Callable[[str], AbstractContextManager[None]]
 """Function that returns a context for one stage of the work, from the name of the stage."""
 
@@ -380,7 +383,7 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
 
     deadline, contradiction = request.due, _contradiction(request)
     notes = unit_notes(request.scene, request.script.objects, request.script.ontology)
-    notes += viewpoint_notes(request.script.viewpoint, request.scene)
+    notes += viewpoint_notes(request.script.viewpoint, request.scene) + _unused_notes(request.script)
     stated = request.scene.from_viewer()
     side = None
     if request.viewpoint != ViewpointName.STATED:
@@ -420,6 +423,16 @@ def _surface_match(name: str, thing: str) -> Match:
     return Match(
         object=name, perceived=thing, score=1.0, similarity=1.0, decided=True, alternatives=(), probability=None
     )
+
+
+def _unused_notes(script: Script) -> tuple[str, ...]:
+    """Return a note about the facts that a text states under a condition, as past or as uncertain."""
+    unused = [] if script.reading is None else [fact for fact in script.reading.stated if not fact.asserted]
+    if not unused:
+        return ()
+    listed = [f"{fact.content} ({', '.join(fact.reservations)})" for fact in unused[:MAX_LISTED]]
+    more = [f"{len(unused) - MAX_LISTED} more"] if len(unused) > MAX_LISTED else []
+    return (f"the text does not assert these facts, which were not used: {'; '.join([*listed, *more])}",)
 
 
 def _contradiction(request: GroundingRequest) -> tuple[str, ...]:
