@@ -25,7 +25,7 @@ from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
 from deixis.memory.episodes.fluents.changes import Change
 from deixis.memory.episodes.fluents.episode import event_of
-from deixis.memory.episodes.predicates import EXPECTED, IS_A
+from deixis.memory.episodes.predicates import EXPECTED, FAULT, IS_A, LAYOUT
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.journal import Part
 from deixis.memory.owner import Closing
@@ -34,7 +34,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import explain
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.diary import FAULT, LAYOUT, Diary, RobotModule
+from deixis.robot.diary import Diary, RobotModule
 from deixis.robot.expected import LOOK_INTERVAL, MIN_MATCH_PROBABILITY, ExpectedObject, Sighting, Standing, introduced
 from deixis.robot.kept import KeptElsewhere, kept_elsewhere
 from deixis.robot.layouts import LearnedLayout
