@@ -96,6 +96,11 @@ _REWORDED = tuple(
         (rf"^((?:was|were|has|have) (?:.+?) ((?:been )?(?:moved|taken away|put down)) (?:before|after) (?:the|an?) "
          rf"{_NOUNS})$",
          lambda found: f"{found[1]} was {found[2].removeprefix('been ')}"),
+        (r"^what (?:(?:has|have) (.+?) (?:said|mentioned)|(?!(?:was|is|were|has|have|did|you)\b)(.+?) (?:said|"
+         r"told (?:you|me)))"
+         r"(?: so far| to (?:you|me))?\b(?! (?:that|is|are|was|were)\b)",
+         lambda found: f"what did {found[1] or found[2]} say"),
+        (r"^what do you know$", "what was shown"),
         (rf"^did (.+?) (?:say|speak|talk|mention|tell (?:you|me|us))(?: (?:anything|something|a word))?"
          rf"(?: to (?:you|me|us|any ?(?:one|body)))?{_TIMED}", r"what did \1 say"),
         (r"^when (?:did|has|have) (.+?)( first| last)? (?:say|said|speak|spoken?|talk(?:ed)?)"

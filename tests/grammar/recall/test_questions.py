@@ -50,6 +50,7 @@ def test_suggested_wordings_are_understood(wording: str) -> None:
         ("Which things has Ada named?", "shown", "things", None, None, "unstated"),
         ("Where was the fork moved from?", "where", "fork", None, None, "before"),
         ("How sure are you that t4 is a spoon?", "whether_called", "t4", "spoon", None, "unstated"),
+        ("What has Ada said about the cup?", "said_about", "cup", None, None, "unstated"),
         ("Will the cup come back?", "future", None, None, None, "unstated"),
         ("Please tell me, since when is the island on the island?", "when_held", "island", "island", "on", "unstated"),
     ],

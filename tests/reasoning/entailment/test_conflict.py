@@ -196,8 +196,9 @@ def test_graded_words_conflict_exactly_if_their_rules_say_so(stated: list[Fact])
     denied = any((fact.relations[0].name, fact.subject, fact.object) in known for fact in stated if not fact.positive)
     found = among(stated)
     assert (found is not None) == (cycle or denied)
-    for fact in () if found is None else found.facts:
-        assert among([other for other in found.facts if other is not fact]) is None
+    facts = () if found is None else found.facts
+    for fact in facts:
+        assert among([other for other in facts if other is not fact]) is None
 
 
 def test_the_conflict_with_the_fewest_facts_is_reported(graph_of: MakeGraph) -> None:

@@ -34,10 +34,11 @@ from deixis.memory.errors import MemoryBusyError, MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line
-from deixis.reasoning.errors import NothingFoundError
+from deixis.reasoning.errors import InconsistencyError, NothingFoundError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.diary import NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
+from deixis.robot.ids import IdError
 from deixis.robot.kept import KeptElsewhere
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
@@ -319,6 +320,9 @@ class Learner(Module):
             if not noted:
                 self._say(NOT_FOUND, at, board)
             return
+        except (InconsistencyError, IdError) as error:
+            self._say(f"I learned nothing: {_without_place(error)}.", at, board)
+            return
         except DeixisError as error:
             if noted:
                 return
@@ -449,8 +453,9 @@ def _is_of_another_time(question: str) -> bool:
 
 
 def _without_place(error: DeixisError) -> str:
-    """Return the first line of an error about words that were said, without the place in a file."""
-    return re.sub(r"^<text>(?::\d+)*: ", "", str(error).splitlines()[0]).rstrip(".")
+    """Return the first line of an error about words that were said, without places in a file."""
+    line = re.sub(r"^<text>(?::\d+)*: | \((?:<text>(?::\d+)*(?:, )?)+\)", "", str(error).splitlines()[0])
+    return line.removeprefix("the script contradicts itself, nothing was learned: ").rstrip(".")
 
 
 def _layout_words(name: str) -> str:
