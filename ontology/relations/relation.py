@@ -45,8 +45,8 @@ class Relation:
     >>> left = default_ontology().relations["left"]
     >>> left.word, left.phrase, str(left.reading)
     ('left', 'left of', 'wide')
-    >>> left.symmetric, left.bit == 1 << left.index, left.admits().shape
-    (False, True, (13, 13))
+    >>> left.symmetric, left.is_strict_order, left.bit == 1 << left.index, left.admits().shape
+    (False, True, True, (13, 13))
     """
 
     name: str  # 'top_left', 'exactly_top_left'
@@ -79,6 +79,11 @@ class Relation:
     def symmetric(self) -> bool:
         """True if the relation is its own inverse."""
         return self.inverse == self.name
+
+    @property
+    def is_strict_order(self) -> bool:
+        """True if nothing has the relation to itself, as no transitive relation with another inverse allows."""
+        return self.transitive and not self.symmetric
 
     def admits(self) -> NDArray[np.bool_]:
         """Return the admitted atoms of the rectangle algebra.

@@ -30,6 +30,7 @@ from deixis.learning.lessons.scene_evidence import (
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.lessons.types import Match
 from deixis.perception.scene import Scene
+from deixis.reasoning.entailment.claim_facts import implications_with_claims
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.reasoning.errors import LimitError, OutOfTimeError, SettingError, require_time_limit
@@ -184,11 +185,13 @@ class GroundingRequest:
 
     @cached_property
     def conflict(self) -> Conflict | None:
-        """Minimal set of facts that cannot hold together, if the script contradicts itself.
+        """Minimal set of facts, stated or implied by claims, that cannot hold together; None for a consistent script.
 
         Raises OutOfTimeError if the time limit is reached first, and LimitError if there are too many objects.
         """
-        return find_conflict(self.implied)
+        if not self.script.claims:
+            return find_conflict(self.implied)
+        return find_conflict(implications_with_claims(self.graph, self.script.claims, self.implied.time_limit)[1][-1])
 
     @cached_property
     def shortlisted(self) -> bool:
