@@ -438,7 +438,7 @@ class NounFinder:
         """Return True if a noun phrase goes on with a word as its noun, after the nouns that it has so far."""
         norm = self.norms[at]
         if norm[0].isdigit():
-            return bool(nouns) and norm.isdigit() and self.norms[at + 1] not in UNITS
+            return bool(nouns) and self.classes[at] == "noun" and self.norms[at + 1] not in UNITS
         if not nouns:
             return self.is_noun(at)
         named = self.is_name(at) and self._nouns.knows(nouns[-1]) and self.words[at - 1].text[:1].islower()

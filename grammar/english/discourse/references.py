@@ -899,6 +899,9 @@ class References:
             kinds = phrase.pronoun == "one" and phrase.plural and bool(phrase.adjectives) and not phrase.determiner
             if kinds and many is not None and many.plural and many.noun and many.role is Role.THING:
                 return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
+            told = any(a.dimension in ("state", "other") for a in phrase.adjectives) and phrase.pronoun == "one"
+            if told and phrase.plural and besides is not None and besides.plural and besides.noun:
+                return self._new(replace(phrase, head=besides.noun, pronoun=None), besides.role)  # 'above fragile ones'
             return self._another_one(phrase, besides, relation)
         if ranks and min(ranks) > group.size and group.noun and phrase.of is None:
             return self._new(

@@ -60,6 +60,9 @@ NOT_STATES = word_set(
 )
 """Verbs whose participles tell no state of a thing."""
 
+_MAY_BE = re.compile(r"\b(?:can|could|may|might)\s+(?:[\w-]+\s+){0,2}be\b", re.IGNORECASE)
+"""Verbs of what may be done to a thing, which is not its state."""
+
 _KEPT = re.compile(
     r"\b(?:go|goes|belongs?|stored?|keep|kept|put|placed?|put|lives?|moved?|stash|stashed)\b", re.IGNORECASE
 )
@@ -218,10 +221,14 @@ class Statements(Relations):
         return next((word for word, form in forms.items() if form.lemma == lemma and form.form == "ing"), lemma)
 
     def _is_doubtful_state(self, predicate: Predicate) -> bool:
-        """Return True where words beside a state were not understood: *fill it half full with what you want to use*."""
+        """Return True for what may be done to a thing, and where words beside a state were not understood.
+
+        Examples are *the lid can be removed* and *fill it half full with what you want to use*.
+        """
         lost = self.references.lost
         acts = predicate.value is not None and predicate.value.word.endswith("ing")
-        return acts or any(end <= predicate.span[0] or start > predicate.span[1] for start, end in lost)
+        may_be = _MAY_BE.search(self.text[self.how.span[0] : predicate.span[1]]) is not None
+        return acts or may_be or any(end <= predicate.span[0] or start > predicate.span[1] for start, end in lost)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         pass

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deixis.grammar.english.vocabulary.adjectives import adjectives
+from deixis.grammar.english.vocabulary.adjectives import QUALITIES, adjectives
 from deixis.grammar.english.vocabulary.function_words import (
     DETERMINERS,
     MODALS,
@@ -90,7 +90,7 @@ _NOUNS_LIKE_QUALITIES = word_set(
     " handful spoonful armful mouthful"
     " table timetable vegetable cable constable stable bible crucible dirigible collectible turntable worktable fable"
     " variable wearable consumable disposable perishable edible convertible thurible"
-    " negative positive digest"
+    " negative positive digest cosy cozy sharp"
 )
 """Nouns with such endings."""
 _ADVERBS_NOT = word_set(
@@ -155,6 +155,8 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     if not noun or noun.startswith(LITERAL) or (nouns.knows(noun) and noun not in _SELDOM_THINGS):
         return True
     words = noun.split()
+    if words[-1].isdigit():
+        return True  # 'number 9'
     if _is_piece_of_clause(words, nouns):
         return False
     if len(words) > 1 and words[-1] == "thing":
@@ -169,8 +171,18 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
 
 def _is_quality(word: str) -> bool:
     """Return True for a word with the form of an adjective: *expensive*, *scarcest*, *shorter*."""
+    if word in _NOUNS_LIKE_QUALITIES:
+        return False
     degree = adjectives().get(word) is not None and word.endswith(("er", "est"))
-    return degree or (word.endswith(_QUALIFYING) and word not in _NOUNS_LIKE_QUALITIES)
+    return degree or word in QUALITIES or _is_superlative(word) or word.endswith(_QUALIFYING)
+
+
+def _is_superlative(word: str) -> bool:
+    """Return True for the superlative of a quality: *sharpest*, *simplest*, *driest*."""
+    if not word.endswith("est"):
+        return False
+    stem = word.removesuffix("est")
+    return not QUALITIES.isdisjoint((stem, f"{stem}e", stem[:-1], f"{stem[:-1]}y"))
 
 
 def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
