@@ -44,7 +44,8 @@ _DENIALS = {
     ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
     ("has", "become"): "became", ("have", "become"): "became",
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
-    ("as", "well", "as"): "and", ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
+    ("as", "well", "as"): "and",
+    ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("nowhere", "to", "be"): "not",
     ("'d", "better"): "should", ("had", "better"): "should", ("little", "or", "no"): "no", ("few", "or", "no"): "no",
@@ -160,7 +161,7 @@ def _read_ranges(words: list[Word]) -> None:
 
 
 def _without_dimensions(words: list[Word]) -> None:
-    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot board*, *a 2cm nail*."""
+    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot rug*, *a 2cm nail*."""
     i = 0
     while i < len(words) - 1:
         end = i + 1
@@ -195,7 +196,8 @@ def _measures_a_thing(words: list[Word], at: int) -> bool:
 
 
 _UNITS_OF_THINGS = word_set(
-    "mm cm m inch in ft foot ml cl dl l litre liter oz ounce g kg lb gallon quart pint cup watt w volt v"
+    "mm cm m inch in ft foot yard yd ml cl dl l litre liter oz ounce g mg kg lb gallon quart pint cup watt w volt v"
+    " \u03bcl ul hz khz kw amp second minute hour day week month year page"
 )
 """Units of the measures that stand before the name of a thing, in the singular."""
 _EXTENTS = word_set(

@@ -27,6 +27,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.things import can_have_a_place
 from deixis.ontology.graph.claims import PLACES
 
 VERB_AFTER = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
@@ -57,7 +58,7 @@ def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
 
 
 def _is_beside_part(phrase: NounPhrase, of: NounPhrase) -> bool:
-    """Return True for a place after a part of a known thing, which is that of what is at the part, and not the thing's."""
+    """Return True for a place after a part of a known thing, which is the place of what is at the part."""
     beside = all(p.relation in _BESIDE | {"above", "below"} and p.arguments and not p.reversed for p in of.predicates)
     return beside and last_word(phrase.head) in PARTS and of.determiner == "the"
 
@@ -202,7 +203,11 @@ class Mentions(Drafting, ABC):
         carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
         if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
             self._say(besides, phrase.predicates, phrase, focus=False)
-        held = "on" if relation in PLACES or SIDE_OF.search(self.text, max(0, phrase.span[0] - 24), phrase.span[0]) is not None else relation
+        held = (
+            "on"
+            if relation in PLACES or SIDE_OF.search(self.text, max(0, phrase.span[0] - 24), phrase.span[0]) is not None
+            else relation
+        )
         outside = tuple(
             p for p in phrase.predicates
             if besides is not None and (
@@ -303,6 +308,10 @@ class Mentions(Drafting, ABC):
             stuff = phrase.of.head
             vessel = last_word(phrase.head) in VESSELS
             filled = vessel and (stuff in _LOOSE or not is_material_noun(last_word(stuff)))
+            filled = filled and can_have_a_place(stuff, self.nouns)  # not 'jars of different sizes'
+            filled = filled and (
+                phrase.of.determiner != "the" or stuff in SUBSTANCES
+            )  # not 'the last glass of the row'
             if is_material_noun(stuff) and not filled and not phrase.of.determiner:  # 'a jug of green glass'
                 self._add("material", (entity,), (), value=stuff, how=plain)
                 for adjective in phrase.of.adjectives:

@@ -849,7 +849,9 @@ class References:
                     entity.adjectives = {("colour", c) for c in colours}
                     self.entities.append(entity)
                     return self._seen(entity, phrase)
-        if group is None and (contrasted := self._contrasted(phrase)) is not None:
+        pair = self.last_group(besides) if phrase.pronoun == "one" else None
+        pair = pair if pair is not None and pair.size == 2 and self._is_fresh(pair) else None  # 'two shelves: …'
+        if group is None and pair is None and (contrasted := self._contrasted(phrase)) is not None:
             return contrasted
         ordered = phrase.adjectives and all(a.dimension in ("rank", "position", "height") for a in phrase.adjectives)
         alone = phrase.pronoun is None and phrase.determiner == "the" and not phrase.plural and phrase.of is None

@@ -85,6 +85,18 @@ _LATERAL = frozenset({"left", "right"})
 """Relations after which *the other side* of a thing is the opposite one."""
 
 
+_STUFFS = word_set(
+    "oak pine walnut maple cherry birch beech teak mahogany bamboo steel brass copper bronze chrome aluminium aluminum"
+    " leather velvet linen cotton silk wool denim canvas marble granite porcelain acrylic plastic vinyl nylon polyester"
+)
+
+
+def _is_stuff(phrase: NounPhrase) -> bool:
+    """Return True for a material without an article and without a number: *oak* of *a chair in oak*."""
+    bare = phrase.determiner is None and phrase.owner is None and phrase.count is None and not phrase.plural
+    return bare and phrase.of is None and not phrase.members and last_word(phrase.head) in _STUFFS
+
+
 _WIDE = word_set(
     "table desk bench workbench worktop counter countertop sideboard dresser shelf board pegboard whiteboard stage tray"
     " rack wall bar buffet altar trolley cart"
@@ -151,6 +163,9 @@ class Relations(Mentions):
         degree = self.text[self.references.start : predicate.span[0]].casefold().split()[-1:]
         if relation in ("near", "far") and degree in (["equally"], ["as"]):
             return  # 'equally far from the cross' compares, and says no distance
+        stuffs = [_is_stuff(a) for a in predicate.arguments]
+        if relation == "inside" and not predicate.reversed and stuffs and all(stuffs):
+            return  # 'a chair in oak', which says what it is made of
         if relation == "outside":
             hollow = all(last_word(a.head) in VESSELS | HOLDERS for a in predicate.arguments)
             if predicate.arguments and hollow and self.how.positive and not predicate.reversed:
@@ -286,8 +301,8 @@ class Relations(Mentions):
                 )
             return
         written = self.text[slice(*predicate.span)].casefold()
-        timed = relation == "in_front" and written.startswith("before ") and any(e.role is Role.THING for e in entities)
-        if timed:
+        timed = relation == "in_front" and written.startswith("before ") and self.how.positive
+        if timed and any(entity.role is Role.THING for entity in entities):
             self.how = self._guessed(Guess.BEFORE)  # 'put the knives out before the forks'
         on_a_side = relation in _LATERAL and not predicate.reversed and _ON_A_SIDE.search(written) is not None
         on_a_side = on_a_side and subject.role is not Role.SURFACE and last_word(subject.noun) not in FURNITURE

@@ -28,7 +28,7 @@ _ACTS = word_set(
     " measure delivery attempt try effort adjustment placement presentation preparation installation maintenance"
     " inspection measurement alignment orientation rotation transition conversation communication discussion"
     " interaction circulation navigation storage organisation organization consideration requirement"
-    " recommendation suggestion explanation description instruction direction exception tip idea option"
+    " recommendation suggestion explanation description instruction direction exception idea option"
     " choice decision plan goal aim purpose reason cause result consequence benefit advantage disadvantage drawback"
     " issue problem trouble mistake error question answer example instance case situation circumstance scenario"
     " condition state status way manner method technique approach strategy style fashion habit practice custom"

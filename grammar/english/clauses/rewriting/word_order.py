@@ -423,7 +423,8 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_clefts, _with_orders, _with_filled_regions, _with_places_where, _with_placed_subjects, _with_verbs_after_places,
+    _with_clefts, _with_orders, _with_filled_regions, _with_places_where, _with_placed_subjects,
+    _with_verbs_after_places,
     _with_participles_of_posture, _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs,
     _with_relative_places, _with_objects_after_verbs, _with_objects_first, _with_contact_clauses, without(_stranded),
     _with_places_before_verbs,
