@@ -68,6 +68,9 @@ _KEPT = re.compile(
 )
 """Verbs before *here* and *there* that mean a place named before, and not one that is pointed at."""
 
+_TURNS = frozenset({"step", "exception", "addition", "option", "choice", "thing", "item", "piece", "element"})
+"""Nouns that *is* fills with a thing: *the last step is the napkin, which goes on the plate*."""
+
 _DETACHED = frozenset({"lid", "cap"})
 """Parts that are taken off their thing, and then have a place of their own."""
 _APART = frozenset(
@@ -134,6 +137,8 @@ class Statements(Relations):
             if denied and relation not in ("pointing", "facing", "open", "closed"):
                 return  # what is denied of a part need not be so of the whole
             subject = subject.whole
+        if subject.role is Role.ABSTRACT and relation == "kind":
+            self._say_kind(subject, predicate, others)
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
@@ -292,6 +297,11 @@ class Statements(Relations):
                 self._say(self.references.picked(free[0], one[0]), one[0].predicates, one[0])
             return
         for phrase in predicate.arguments:
+            abstract = subject.role is Role.ABSTRACT or subject.noun in _TURNS or self._is_no_thing(subject)
+            if abstract and phrase.head and phrase.predicates:
+                self._introduce(phrase)  # 'the only exception is the oyster fork, which goes on the right'
+            if abstract and (phrase.predicates or subject.role is Role.ABSTRACT):
+                continue
             one_of_them = phrase.pronoun == "one" and phrase.determiner == "the"  # 'my mug, the big blue one'
             for adjective in phrase.adjectives:
                 name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))

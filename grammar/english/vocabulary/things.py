@@ -119,6 +119,10 @@ _PARTICIPLES = word_set(
     " including having stuffing alternating filling"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
+_VERBAL = ("bute", "tute", "cate", "nate", "rate", "ize", "ify", "duce", "clude", "scribe", "volve")
+"""Endings of verbs, which stand after a plural in a clause."""
+_OF_MEANS = frozenset({"using", "including", "having", "containing"})
+"""Participles of clauses inside a run of words."""
 _OF_CLAUSES = (
     DETERMINERS
     | POSSESSIVES.keys()
@@ -194,6 +198,10 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     at = words.index("can") if "can" in words[1:-1] else 0
     if at and not nouns.knows(words[at + 1]):
         return True  # 'rules can vary', not 'garbage can lid'
+    if words[-1].endswith(_VERBAL) and not nouns.knows(words[-1]) and nouns.singular(words[-2])[1]:
+        return True  # 'parts contribute'
+    if not _OF_MEANS.isdisjoint(words[1:]):
+        return True  # 'wall using nails'
     counted = words[0].endswith("ing") and not NUMBERS.keys().isdisjoint(words[1:-1])
     if words[0] in _PARTICIPLES or counted:  # 'placing lids', 'drilling two screws'
         return True

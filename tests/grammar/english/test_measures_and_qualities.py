@@ -41,7 +41,12 @@ def test_ones_with_qualities_are_other_things() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("noun", ["chest", "nest", "vest", "sharp knife", "crispy roll"])
+@pytest.mark.parametrize("noun", ["parts contribute", "wall using nails"])
+def test_pieces_of_clauses_name_no_thing(noun: str) -> None:
+    assert not can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+@pytest.mark.parametrize("noun", ["chest", "nest", "vest", "sharp knife", "crispy roll", "clothes line"])
 def test_names_with_qualities_name_things(noun: str) -> None:
     assert can_have_a_place(noun, known_nouns(default_ontology().kinds))
 
@@ -86,6 +91,11 @@ def test_acts_means_and_possible_states_are_not_stated(text: str) -> None:
          ["part(pens, board, 'left')", "part(pins, board, 'right')", "inside(lid, box)"]),
         ("The centerpiece stands on the cloth, with candles on either side.",
          ["on(centerpiece, cloth)", "each_side(candles, centerpiece)"]),
+        ("The only exception is the oyster fork, which is placed to the right of the spoons.",
+         ["right(oyster_fork, spoons)"]),
+        ("The last step is the napkin, which goes in the box.", ["inside(napkin, box)"]),
+        ("Any type of napkin can be placed behind the jug.", ["behind(napkin, jug)"]),
+        ("A selection of cheeses stands next to the jug.", ["next_to(cheeses, jug)"]),
         ("In either case, place the plates next to the jug.", ["next_to(plates, jug)"]),
         ("Add the candles to glass jars of different sizes.", ["inside(candles, jars)"]),
         ("The southern wall is blue. Two boards lie above the jug: the cans sit on the upper one.",
