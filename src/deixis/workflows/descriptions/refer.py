@@ -41,7 +41,7 @@ MIN_LISTED = 1e-3
 """Minimum probability of a listed alternative."""
 
 MIN_LIKENESS = 0.5
-"""Minimum similarity of a noun to a label, below which the label tells nothing for the noun; *stool* and *chair*."""
+"""Minimum similarity of a noun and a label that counts as alike; that of *stool* and *chair*."""
 
 
 @checks_arguments
