@@ -103,7 +103,7 @@ _WIDE = word_set(
 )
 """Nouns of what carries or shows many things, each of which can be on one side of it."""
 
-_ON_A_SIDE = re.compile(r"\b(?:on|at)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
+_ON_A_SIDE = re.compile(r"\b(?:on|at|to)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
 """Words by which a side is a part of the surface, and not a direction from it."""
 
 

@@ -96,6 +96,7 @@ def test_acts_means_and_possible_states_are_not_stated(text: str) -> None:
         ("The last step is the napkin, which goes in the box.", ["inside(napkin, box)"]),
         ("Any type of napkin can be placed behind the jug.", ["behind(napkin, jug)"]),
         ("A selection of cheeses stands next to the jug.", ["next_to(cheeses, jug)"]),
+        ("A simply folded napkin is laid behind the jug.", ["behind(napkin, jug)"]),
         ("In either case, place the plates next to the jug.", ["next_to(plates, jug)"]),
         ("Add the candles to glass jars of different sizes.", ["inside(candles, jars)"]),
         ("The southern wall is blue. Two boards lie above the jug: the cans sit on the upper one.",
