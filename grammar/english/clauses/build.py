@@ -361,6 +361,13 @@ class Builder(Transformer[Any, Built]):
         if aims and last_word(phrase.head) in PARTS:  # 'the handle of the spoon pointing to the right'
             inner = replace(inner, predicates=tuple(p for p in inner.predicates if p not in aims))
             its = (*aims, *its)
+        kind = last_word(phrase.head) in _KINDS and inner.head and inner.determiner is None and inner.count is None
+        if kind and not inner.members and phrase.owner is None:  # 'any type of napkin'
+            plural = inner.plural or phrase.determiner in ("any", "all", "several")
+            return replace(inner, plural=plural, span=union(phrase.span, inner.span), predicates=inner.predicates)
+        if phrase.head in _RESTS and phrase.owner is None and inner.head and not inner.members:
+            others = Adjective("remaining", "other", Degree.PLAIN, phrase.span)
+            return replace(inner, adjectives=(others, *inner.adjectives), span=union(phrase.span, inner.span))
         if not phrase.head and phrase.pronoun is None and phrase.determiner in _QUANTIFIERS and inner.head:
             return replace(inner, plural=True, span=union(phrase.span, inner.span))  # 'most of the knives'
         if phrase.head.rpartition(" ")[2] in _AMOUNTS and inner.head and not inner.owner and inner.determiner is None:
@@ -1031,6 +1038,10 @@ _FASTENING = word_set(
     " mount install hold affix anchor hook lower raise lift pull drag turn spread pour stick scoop lock"
 )
 """Commands in which *with* names a tool: *secure it with two bolts*."""
+_KINDS = word_set("type kind sort variety assortment selection range choice")
+"""Nouns of what the things after *of* are like or how many they are: *a selection of cheeses*."""
+_RESTS = frozenset({"rest", "remainder", "bulk"})
+"""Nouns of what is left of the things after *of*: *the rest of the spoons*."""
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
 _OF_ITS_OWN = frozenset({"upside_down", "on", "inside"})
 """Relations that a relative clause states of its noun, and that a phrase may state of the subject before."""

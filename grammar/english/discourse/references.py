@@ -849,7 +849,9 @@ class References:
                     entity.adjectives = {("colour", c) for c in colours}
                     self.entities.append(entity)
                     return self._seen(entity, phrase)
-        if group is None and (contrasted := self._contrasted(phrase)) is not None:
+        pair = self.last_group(besides) if phrase.pronoun == "one" else None
+        pair = pair if pair is not None and pair.size == 2 and self._is_fresh(pair) else None  # 'two shelves: …'
+        if group is None and pair is None and (contrasted := self._contrasted(phrase)) is not None:
             return contrasted
         ordered = phrase.adjectives and all(a.dimension in ("rank", "position", "height") for a in phrase.adjectives)
         alone = phrase.pronoun is None and phrase.determiner == "the" and not phrase.plural and phrase.of is None
@@ -899,6 +901,9 @@ class References:
             kinds = phrase.pronoun == "one" and phrase.plural and bool(phrase.adjectives) and not phrase.determiner
             if kinds and many is not None and many.plural and many.noun and many.role is Role.THING:
                 return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
+            told = any(a.dimension in ("state", "other") for a in phrase.adjectives) and phrase.pronoun == "one"
+            if told and phrase.plural and besides is not None and besides.plural and besides.noun:
+                return self._new(replace(phrase, head=besides.noun, pronoun=None), besides.role)  # 'above fragile ones'
             return self._another_one(phrase, besides, relation)
         if ranks and min(ranks) > group.size and group.noun and phrase.of is None:
             return self._new(
