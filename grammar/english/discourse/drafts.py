@@ -180,7 +180,9 @@ class Drafting:
     def _is_no_thing(self, entity: Entity) -> bool:
         """Return True for an object whose name says that it is a quality, an act, a time, or a piece of a clause."""
         storey = entity.noun == "level" and any(d in ("position", "rank") for d, _ in entity.adjectives)
-        return entity.role is Role.THING and not storey and not can_have_a_place(entity.noun, self.nouns)
+        matter = entity.noun == "thing" and not entity.plural and entity.group is None  # 'the thing to do is …'
+        unnamed = matter or not can_have_a_place(entity.noun, self.nouns)
+        return entity.role is Role.THING and not storey and unnamed
 
     def _compare(self, relation: str, subject: Entity, other: Entity, phrase: NounPhrase) -> None:
         how = Qualification(phrase.span, self.references.sentence)

@@ -25,6 +25,14 @@ _CALLING = frozenset({"call", "name", "know", "mark", "label", "refer", "title",
 _NAMES = frozenset({"NP", "ADVERB", "ADJP", "CUT", "NOT", "UNKNOWN"})
 """Chunks in parentheses that say no place: *(A)*, *(mice!)*, *(not the blue one)*."""
 
+_SHOWN = word_set(
+    "see fig figure figures page pages pp photo photos picture pictures diagram illustration shown pictured"
+)
+"""First words in parentheses that send the reader elsewhere: *(see photo)*, *(Figure 2)*."""
+
+_BESIDE_THE_TEXT = word_set("above below left right inset opposite overleaf top bottom")
+"""Single words in parentheses that tell where a picture stands beside the text."""
+
 _ENDEARMENTS = word_set(
     "darling dear dearest love sweetheart honey mum mom mummy mommy dad daddy gran grandma grandpa son daughter mate"
     " buddy guys folks everyone all team sir madam ladies gentlemen kids boys girls class students colleagues friends"
@@ -61,6 +69,14 @@ def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         if opened and _is_conditional(inside):
             leave_out(inside, "what parentheses say under a condition is not read")
             i = (closing or i) + 1
+            continue
+        if opened and _is_reference(inside, text) and len(_directions_apart(chunks, text)) < 2:
+            leave_out(inside, "this tells where a picture shows it")
+            i = (closing or i) + 1  # 'bolt the legs to the top (left)'
+            continue
+        if opened and _is_clause(inside) and type_at(chunks, (closing or i) + 1) not in ENDS:
+            after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), *inside]
+            i = (closing or i) + 1  # 'put the basket (mine is from a market) on the shelf'
             continue
         follows_noun = opened and kept[-1].type == "NP"
         doing = inside[1:] if opened and inside[0].type == "ADVERB" else inside
@@ -99,6 +115,28 @@ def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         kept.append(chunk)
         i += 1
     return with_last(kept, after)
+
+
+def _is_reference(inside: list[Chunk], text: str) -> bool:
+    """Return True for words that send the reader to a picture or to a page: *(above)*, *(inset)*, *(see page 65)*."""
+    words = text[inside[0].span[0] : inside[-1].span[1]].casefold().replace(".", " ").split()
+    return words[0] in _SHOWN or (len(words) == 1 and words[0] in _BESIDE_THE_TEXT)
+
+
+def _directions_apart(chunks: list[Chunk], text: str) -> list[str]:
+    """Return the directions that stand alone in parentheses, of which several tell things apart."""
+    inner = zip(chunks, chunks[1:], chunks[2:], strict=False)
+    words = (
+        text[slice(*b.span)].casefold() for a, b, c in inner if text[slice(*a.span)] + text[slice(*c.span)] == "()"
+    )
+    return [word for word in words if word in _BESIDE_THE_TEXT]
+
+
+def _is_clause(inside: list[Chunk]) -> bool:
+    """Return True for a clause with a noun as its subject: *(mine is from a market)*, but not *(which is red)*."""
+    types = [chunk.type for chunk in inside if chunk.type != "ADVERB"]
+    verb = next((k for k, kind in enumerate(types) if kind in FINITE), 0)
+    return types[:1] == ["NP"] and verb > 0 and "COMMA" not in types[:verb]
 
 
 def _is_conditional(inside: list[Chunk]) -> bool:

@@ -1,0 +1,133 @@
+"""Facts of advice on what a place is for, of things told by their use, of references to pictures, and of actions."""
+
+from __future__ import annotations
+
+import pytest
+from asserted_facts import asserted
+
+from deixis.grammar.english.reader import read_english
+from deixis.grammar.english.vocabulary.known_nouns import known_nouns
+from deixis.grammar.english.vocabulary.things import can_have_a_place
+from deixis.grammar.errors import ScriptError
+from deixis.ontology.tbox import default_ontology
+
+
+def asserted_if_any(text: str) -> list[str]:
+    """Return the places that a text asserts; none if no fact of it was understood."""
+    try:
+        return asserted(text)
+    except ScriptError:
+        return []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The middle drawer is used for pens.", ["inside(pens, drawer)"]),
+        ("The middle drawer is a good place for storing pens.", ["inside(pens, drawer)"]),
+        ("The middle drawer is a good place to store pens.", ["inside(pens, drawer)"]),
+        ("Use the middle drawer to store pens and rulers.", ["inside(pens, drawer)", "inside(rulers, drawer)"]),
+        ("The lower shelf is where the jars go.", ["on(jars, shelf)"]),
+        ("The lower shelf is home to the jars.", ["on(jars, shelf)"]),
+        ("The lower shelf works well for jars.", ["on(jars, shelf)"]),
+        ("The lower shelf is ideal for jars, bowls and pots.",
+         ["on(jars, shelf)", "on(bowls, shelf)", "on(pots, shelf)"]),
+        ("Designate a drawer for batteries.", ["inside(batteries, drawer)"]),
+        ("Dedicate one drawer to batteries.", ["inside(batteries, drawer)"]),
+        ("The top shelf should be reserved for foods that need no cooking.", ["on(foods, shelf)"]),
+        ("The left side is for forks.", ["part(forks, 'left')"]),
+        ("The space behind the piano is perfect for a broom.", ["behind(broom, piano)"]),
+        ("Use the upper rack for cups and the lower rack for plates.",
+         ["inside(cups, top_rack)", "inside(plates, bottom_rack)"]),
+    ],
+)  # fmt: skip
+def test_what_a_place_is_for_tells_what_is_there(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "The shelf is perfect for small kitchens.",
+        "The drawer is not for knives.",
+        "If the drawer is for knives, put them there.",
+        "The tray is used for serving drinks.",
+        "The top shelf could be used for jars.",
+        "The drawer is ideal for guests.",
+        "The small fork is for salads.",
+    ],
+)
+def test_other_purposes_state_no_places(text: str) -> None:
+    assert asserted_if_any(text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The cup is by the jug. The things you need often belong in the top drawer.",
+         ["near(cup, jug)", "inside(things, drawer)"]),
+        ("Store the toys your children play with in low bins.", ["inside(toys, bins)"]),
+        ("Items you will need quick access to should be kept in the pouch.", ["inside(items, pouch)"]),
+        ("The pieces that you want to display go on the box.", ["on(pieces, box)"]),
+        ("Keep anything you rarely use in the crate.", ["inside(thing, crate)"]),
+        ("The books we have not read are in the crate.", ["inside(books, crate)"]),
+        ("The jars that you use for cooking are in the crate.", ["inside(jars, crate)"]),
+    ],
+)  # fmt: skip
+def test_clauses_of_use_tell_which_things_are_meant(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Slide the drawer into the box (above).", ["inside(drawer, box)"]),
+        ("Bolt the legs to the frame (inset).", ["touching(legs, frame)"]),
+        ("The router (left) sits behind the lamp.", ["behind(router, lamp)"]),
+        ("Place the jug (see page 65) on the box.", ["on(jug, box)"]),
+        ("Put the basket (mine is from a market) on the box.", ["on(basket, box)"]),
+        ("Add a shrub (boxwood is a good choice, or rosemary) to the left of the gate.", ["left(shrub, gate)"]),
+        ("The fork (left) and the knife (right) belong together.", ["part(fork, 'left')", "part(knife, 'right')"]),
+    ],
+)
+def test_references_and_comments_in_parentheses_state_no_place(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Stuff socks in the box.", ["inside(socks, box)"]),
+        ("File letters in the box.", ["inside(letters, box)"]),
+        ("Reposition cups in the box.", ["inside(cups, box)"]),
+        ("Ease the tray into the slot.", ["inside(tray, slot)"]),
+        ("Oftentimes, the cups are in the box.", ["inside(cups, box)"]),
+        ("Traditionally the cups are in the box.", ["inside(cups, box)"]),
+        ("Do not hesitate to put the cup in the box.", ["inside(cup, box)"]),
+    ],
+)
+def test_verbs_and_adverbs_at_the_beginning_are_not_names(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    "text", ["Polish spoons in the sink.", "Chop onions on the board.", "Rinse one cup in the sink."]
+)
+def test_places_of_actions_are_not_those_of_their_objects(text: str) -> None:
+    assert asserted_if_any(text) == []
+
+
+@pytest.mark.parametrize("noun", ["humidity", "airflow", "lightning strike", "responsibility"])
+def test_abstract_nouns_have_no_place(noun: str) -> None:
+    assert not can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+@pytest.mark.parametrize("noun", ["vanity", "nativity", "commodity", "cavity"])
+def test_things_named_like_qualities_have_places(noun: str) -> None:
+    assert can_have_a_place(noun, known_nouns(default_ontology().kinds))
+
+
+def test_the_thing_to_do_is_not_an_object() -> None:
+    reading = read_english("The cup is on the box. The thing to do is to hang the lamp above the box.").reading
+    assert reading is not None
+    assert [str(fact.content) for fact in reading.stated if fact.asserted] == ["on(cup, box)"]
