@@ -628,10 +628,15 @@ class FixedPhraseChunker(JointChunker):
             purpose = self.norms[i] == "for" and self.norms[i + 1].endswith("ing") and self.norms[i + 2] in CLAUSE_ENDS
             if purpose or list(self.norms[i : i + 2]) in _FREQUENT_PAIRS:
                 i += 2
-            elif self.norms[i] in _FREQUENCIES or self.norms[i].endswith("ly") or (self.norms[i] in _STRANDED and self._is_stranded(i + 1)):
+            elif self._adds_nothing(i):
                 i += 1
             else:
                 return i
+
+    def _adds_nothing(self, at: int) -> bool:
+        """Return True for an adverb, and for a preposition without its noun."""
+        adverb = self.norms[at] in _FREQUENCIES or self.norms[at].endswith("ly")
+        return adverb or (self.norms[at] in _STRANDED and self._is_stranded(at + 1))
 
     def _is_stranded(self, at: int) -> bool:
         """Return True where a preposition has no noun after it: *the toys they play with are …*."""
