@@ -341,7 +341,9 @@ class Statements(Relations):
                 and phrase.owner is None and not phrase.predicates and phrase.count is None
             ):  # fmt: skip
                 self._add("contents", (subject,), (), value=phrase.head)
-            elif last_word(phrase.head) in PARTS or phrase.head == "glass":
+            elif last_word(phrase.head) in PARTS or (
+                phrase.head == "glass" and phrase.determiner not in ("a", "another")
+            ):
                 states = [a.word for a in phrase.adjectives if a.dimension == "state"]
                 if states:
                     self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")

@@ -64,7 +64,8 @@ _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
     "measure area date help law company light case work support state finish use reach rest stage rule second"
-    " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
+    " initial standard connection view sound tip matter trace title name story plan order choice play step storage"
+    " turn notion"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
 _SELDOM_THINGS = word_set("level pitch bit outside inside")

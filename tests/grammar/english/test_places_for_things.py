@@ -131,3 +131,46 @@ def test_the_thing_to_do_is_not_an_object() -> None:
     reading = read_english("The cup is on the box. The thing to do is to hang the lamp above the box.").reading
     assert reading is not None
     assert [str(fact.content) for fact in reading.stated if fact.asserted] == ["on(cup, box)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Two stools are by the sofa. Put your center stool near the lamp.", ["near(stool_3, lamp)"]),
+        ("Two stools are by the sofa. The rear stools go behind the lamp.", ["behind(stools, lamp)"]),
+        ("Three stools are by the sofa. The middle stool is near the lamp.", ["near(stool_2, lamp)"]),
+        ("The stools stay. Each of the two stools stands near your lamp.",
+         ["near(stool_1, lamp)", "near(stool_2, lamp)"]),
+        ("The hamper is red. This is the closet in my attic.", ["inside(closet, attic)"]),
+        ("The hamper is red. That is the chair next to the lamp.", ["next_to(chair, lamp)"]),
+        ("Build an altar with three levels. On the top level of the altar, place a cup.", ["on(cup, level)"]),
+    ],
+)  # fmt: skip
+def test_positions_and_pointing_words_name_other_things(text: str, expected: list[str]) -> None:
+    assert [fact for fact in asserted(text) if "sofa" not in fact and not fact.startswith("colour(")] == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The mirror hangs above the chest, with a lamp on each side.",
+         ["above(mirror, chest)", "each_side(lamp_1, mirror)", "each_side(lamp_2, mirror)"]),
+        ("The bed stands against the wall with a lamp on either side.",
+         ["each_side(lamp_1, bed)", "each_side(lamp_2, bed)", "against(bed, 'wall')"]),
+        ("The drawer has knives in front and forks in back.",
+         ["part(knives, drawer, 'front')", "part(forks, drawer, 'back')"]),
+        ("Place larger pots in the back and smaller ones in front.", ["part(pots, 'back')", "part(pot, 'front')"]),
+        ("Mount a rack on the inside of the door.", ["on(rack, door)"]),
+        ("There is a place for the broom behind the piano.", ["behind(broom, piano)"]),
+        ("The box holds a stack of books and a pile of papers.", ["inside(stack, box)", "inside(pile, box)"]),
+        ("The box holds a jug of milk and a glass of water.", ["inside(jug, box)", "inside(glass, box)"]),
+        ("Top shelf: plates. Bottom shelf: heavy pots.", ["on(plates, top_shelf)", "on(pots, bottom_shelf)"]),
+        ("Roof box: sleeping bags and pillows.", ["inside(sleeping_bags, roof_box)", "inside(pillows, roof_box)"]),
+    ],
+)  # fmt: skip
+def test_what_holders_have_and_labels_say_tells_places(text: str, expected: list[str]) -> None:
+    assert [fact for fact in asserted(text) if not fact.startswith("contents(")] == expected
+
+
+def test_one_thing_alone_after_a_label_of_a_vessel_is_not_its_contents() -> None:
+    assert asserted_if_any("Jug: tray. The cup is by the lamp.") == ["near(cup, lamp)"]

@@ -192,6 +192,18 @@ def _where(chunks: list[Chunk], at: int) -> tuple[list[Chunk], int] | None:
     return (chunks[at + 1 : at + 2], end) if fits and type_at(chunks, end) in ENDS else None
 
 
+def _existing(chunks: list[Chunk], at: int) -> list[Chunk] | None:
+    """Return *there is a place for the broom behind the piano* as *the broom is behind the piano*."""
+    types = [type_at(chunks, at + k) for k in range(6)]
+    if types != ["THERE", "BE", "NP", "PREP", "NP", "PREP"] or not chunks[at + 1].value.positive:
+        return None
+    spot, relator, thing = chunks[at + 2].value, chunks[at + 3], chunks[at + 4].value
+    free = last_word(spot.head) in _GOOD_PLACES | {"room", "space"} and spot.determiner != "no"
+    if not free or word_of(relator) != "for" or not _names_things(thing, True):
+        return None
+    return [*chunks[:at], chunks[at + 4], chunks[at + 1], *chunks[at + 5 :]]
+
+
 def _command(chunks: list[Chunk], at: int) -> list[Chunk] | None:
     """Return *use the upper rack for cups and the lower rack for plates* as *put cups in the upper rack and …*."""
     group = chunks[at].value
@@ -228,7 +240,7 @@ def _with_assigned_places(chunks: list[Chunk]) -> list[Chunk]:
         for at in range(len(plain)):
             if type_at(plain, at - 1) not in ENDS:
                 continue
-            made = _statement(plain, at) or _command(plain, at)
+            made = _statement(plain, at) or _command(plain, at) or _existing(plain, at)
             if made is not None:
                 whole = made
                 break
