@@ -172,5 +172,5 @@ def test_what_holders_have_and_labels_say_tells_places(text: str, expected: list
     assert [fact for fact in asserted(text) if not fact.startswith("contents(")] == expected
 
 
-def test_one_thing_alone_after_a_label_of_a_vessel_is_not_its_contents() -> None:
+def test_a_tray_after_the_label_of_a_jug_is_not_its_contents() -> None:
     assert asserted_if_any("Jug: tray. The cup is by the lamp.") == ["near(cup, lamp)"]
