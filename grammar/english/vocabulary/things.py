@@ -121,7 +121,8 @@ _SUGGESTING = word_set("suggest recommend advise prefer think")
 """Verbs of persons, which are not nouns."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
-    " including having stuffing alternating filling"
+    " including having stuffing alternating filling storing grouping displaying organizing organising securing"
+    " installing tucking"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
 _OF_CLAUSES = (

@@ -96,23 +96,23 @@ posture: sheathe, lug, haul, conceal, hoard, ensconce, mound, ease, guide, maneu
 posture: wiggle, flip, invert, upend, cascade, confine, banish, interlace, intersperse, superimpose, juxtapose
 posture: elevate, implant, transplant, repot, rehang rehangs rehung rehung rehanging, reinsert, reinstall, reattach
 posture: reconnect, restack, replant, unroll, tack, rack, chain, wire
-other: alter, amend, cultivate, define, develop, extract, merge, mince, poach, refold, slather, uncover
+other: alter, amend, cultivate, define, develop, merge, mince, poach, refold, slather, uncover
 other: accept, accomplish, acquire, adapt, adhere, admit, adopt, adore, afford, analyse, analyze, annotate, announce
 other: annoy, anticipate, apologize, appreciate, approve, ascend, assess, assist, assure, attend, attract
 other: baste, bathe, behave, blanch, borrow, bother, braise, breathe, brighten, broaden, browse, calculate
 other: calibrate, celebrate, characterize, cherish, chop, clarify, cleanse, coincide, combine, commemorate
-other: communicate, compare, compensate, compete, compile, complain, comply, compress, comprise, concentrate
-other: concern, condense, conduct, conform, confuse, consider, consist, constitute, consume, contribute
+other: communicate, compare, compensate, compete, compile, complain, comply, comprise, concentrate
+other: condense, conduct, conform, confuse, consider, consist, constitute, consume, contribute
 other: convert, convey, convince, cook, cooperate, coordinate, correspond, crumble, customise, customize, dampen
 other: darken, deadhead, decant, declare, declutter, decorate, dedicate, deepen, defend, defrost, degrease, delete
 other: deliver, demonstrate, deny, depend, depict, deserve, detect, deter, deteriorate, determine, detract, devote
-other: diffuse, dilute, diminish, disappear, discover, discuss, disguise, disinfect, dislike, disrupt, dissolve
+other: diffuse, dilute, diminish, disappear, discover, discuss, disguise, disinfect, disrupt, dissolve
 other: distinguish, distract, disturb, dominate, donate, earn, educate, eliminate, elongate, embellish, embody, emit
 other: employ, enable, encourage, endanger, endure, engage, engrave, enlarge, enlighten, enrich, entertain, equip
 other: erase, erect, establish, estimate, evaluate, evaporate, evoke, exaggerate, examine, exceed, excel, excite
 other: execute, exist, expand, expect, explore, expose, extinguish, facilitate, fade, familiarize, ferment
 other: fertilize, finalize, flatter, formulate, fortify, foster, freshen, frighten, fulfil, fulfill, generate
-other: germinate, greet, guess, halve, harden, harmonize, hasten, heighten, hesitate, hibernate, hinder, hire
+other: germinate, greet, halve, harden, harmonize, hasten, heighten, hesitate, hibernate, hinder, hire
 other: hydrate, ignite, illuminate, illustrate, imitate, impose, impress, incorporate, indicate, induce, indulge
 other: inflate, inform, infuse, inhabit, inherit, inhibit, initiate, injure, inspire, instruct, insulate, integrate
 other: intend, interact, interfere, interpret, interrupt, introduce, invent, invest, invite, involve, isolate
@@ -123,11 +123,11 @@ other: oppose, optimize, originate, overcook, overfill, overheat, overpower, ove
 other: participate, penetrate, perceive, perform, persist, personalize, persuade, pertain, polish, pollinate, ponder
 other: portray, possess, postpone, precede, predict, prepare, preserve, prevail, prioritise, prioritize, proceed
 other: proclaim, procure, prohibit, proliferate, prolong, promote, pronounce, propagate, propose, prosper, prune
-other: publish, pulverize, purify, pursue, qualify, quench, radiate, reassemble, reassure, recall, recharge, recite
-other: reclaim, recognise, recognize, reconsider, reconstruct, recover, recreate, recycle, redecorate, redefine
+other: publish, pulverize, purify, pursue, qualify, quench, radiate, reassemble, reassure, recharge, recite
+other: reclaim, recognise, recognize, reconsider, reconstruct, recover, recreate, redecorate, redefine
 other: refer, refine, refinish, reflect, refrain, refresh, regain, regulate, reheat, reinforce, reject, relate
 other: relax, relieve, rely, remember, renew, renovate, repaint, represent, reproduce, repurpose, resist, resolve
-other: respond, restrain, restrict, resume, retain, retire, retrieve, reuse, reveal, revise, revisit, revolve, ripen
+other: respond, restrain, restrict, resume, retain, retire, retrieve, reuse, revise, revisit, revolve, ripen
 other: sanitise, sanitize, satisfy, saturate, scour, sharpen, shatter, shorten, sift, signify, simplify, soothe
 other: stabilize, startle, sterilize, stimulate, strengthen, submit, succeed, suffer, suffice, summarize, supervise
 other: surpass, survive, sustain, sweeten, symbolise, symbolize, tempt, tend, terminate, thicken, threaten, tolerate
@@ -138,7 +138,7 @@ other: withdraw withdraws withdrew withdrawn withdrawing, undo undoes undid undo
 other: redo redoes redid redone redoing, overcome overcomes overcame overcome overcoming
 other: oversee oversees oversaw overseen overseeing, lend lends lent lent lending
 other: teach teaches taught taught teaching, forgive forgives forgave forgiven forgiving
-other: foresee foresees foresaw foreseen foreseeing, undergo undergoes underwent undergone undergoing
+other: foresee foresees foresaw foreseen foreseeing
 other: undertake undertakes undertook undertaken undertaking, withstand withstands withstood withstood withstanding
 other: prove proves proved proven proving, rethink rethinks rethought rethought rethinking
 other: rebuild rebuilds rebuilt rebuilt rebuilding, seek seeks sought sought seeking
