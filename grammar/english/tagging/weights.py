@@ -7,156 +7,156 @@ from __future__ import annotations
 
 _AFTER = """
                        noun  adjective     finite       base participle        ing      modal determiner    pronoun
-adjective              0.21       2.02       0.83      -2.67      -1.30      -2.75       1.03       1.06      -0.53
-be                    -1.85      -1.69       0.62      -1.69       2.02       2.81          -       0.33          -
-by                    -1.88          -      -0.88      -1.77          -       2.35          -          -          -
-determiner             2.58       2.84      -1.64      -2.52       0.16      -2.57      -1.25      -0.67       0.20
-ing                   -0.77       1.51      -0.10      -1.09      -0.16       0.85      -0.07          -          -
-joint                     -      -0.86      -0.67      -0.38       2.91       0.56       0.57      -0.23          -
-modal                 -1.03      -1.36      -0.33       1.30      -0.39      -0.67      -0.79       1.24       0.41
-noun                   0.11      -0.83       0.97      -0.86       1.20       0.77       1.11      -1.47      -0.26
-of                     1.02       1.24      -0.40      -1.17          -          -          -      -1.25      -0.22
-participle             2.27      -0.20       0.54      -1.11      -0.62       1.77          -      -0.15       1.58
-place                  0.43          -          -      -0.43          -          -          -          -          -
-preposition           -0.28       0.56      -1.05      -1.74       0.19      -0.15       1.18      -0.40      -0.98
-pronoun               -2.27      -1.95       2.32       0.42       0.70       0.81       2.17      -0.13       0.99
-relative                  -      -0.29       0.56          -       0.21          -       0.38       1.06       0.19
-start                  0.26      -0.34      -2.77       0.32       0.62       0.70       0.87      -0.64          -
-subordinate            0.55      -0.68      -1.00      -0.32       0.19       1.61       0.56       1.35      -0.33
-to                    -0.86       0.86       2.09       0.43       1.09          -          -      -0.15      -0.05
-verb                  -1.28      -1.12       0.11       0.11       0.87      -0.69      -0.46       1.12      -0.17
+adjective              0.29       2.25       0.86      -2.56      -1.23      -2.66       1.51       1.07      -0.44
+be                    -2.00      -1.61       0.45      -1.83       1.99       3.16          -       0.34          -
+by                    -1.72          -      -0.93      -1.69          -       2.09          -       0.05      -0.05
+determiner             2.65       2.94      -1.74      -2.32       0.08      -2.43      -0.89      -0.70       0.30
+ing                   -0.70       1.14          -      -1.28       0.52       0.89      -0.11          -      -0.34
+joint                     -      -0.99      -0.62      -0.39       2.76       0.50       0.44      -0.24      -0.23
+modal                 -1.03      -1.21      -0.09       1.13      -0.24      -0.63      -0.87       1.17       0.55
+noun                   0.23      -0.77       1.17      -0.82       1.19       0.75       1.22      -1.61      -0.34
+of                     1.48       1.15      -0.33      -1.66          -          -          -      -1.30       0.34
+participle             2.25      -0.37       0.23      -1.21      -0.28       1.71          -      -0.16       1.81
+place                  0.47          -          -      -0.47          -          -          -          -          -
+preposition           -0.10       0.66      -0.98      -1.74       0.22      -0.10       1.00      -0.16      -0.70
+pronoun               -2.61      -1.93       2.37          -       0.72       0.81       1.99      -0.06       0.70
+relative               0.08      -0.14       0.75       0.22      -0.13          -       0.25       1.18       0.17
+start                  0.38      -0.12      -2.52       0.23       0.68       0.76       0.85      -0.63       0.17
+subordinate            0.60      -1.12      -1.06      -0.33       0.12       1.73       0.41       1.14      -0.29
+to                    -0.84       1.15       2.04       0.36       1.13          -          -      -0.14      -0.05
+verb                  -1.17      -1.13       0.18      -0.09       0.83      -0.86      -0.33       0.93      -0.24
 """
 """Class of a word (columns) after the class of the word before it (rows); *of* and *by* are words."""
 
 _BEFORE = """
                        noun  adjective     finite       base participle        ing      modal determiner    pronoun
-adjective              0.10      -2.29       1.09      -0.67       2.03      -0.70       1.53      -0.48       0.54
-adverb                -0.56      -1.16       0.72      -0.64       0.24       2.00       1.91      -0.65       0.57
-be                     0.52       1.35      -2.19      -0.58      -0.92      -2.59       2.23      -1.74       1.33
-colon                  1.66       1.07      -1.77      -2.06      -0.92       1.20      -0.37      -0.38       1.09
-determiner            -0.98      -0.41       1.38       0.77       1.69          -       0.61      -0.64      -0.39
-digits                 1.70          -       0.24      -1.33      -0.47          -          -          -          -
-end                    0.61       1.53      -0.10      -1.09      -0.63       1.32      -0.77      -1.39       1.39
-joint                  0.63       1.87          -      -0.81      -0.17       1.05      -0.64      -1.05       1.22
-of                     2.37       1.25      -2.12      -1.39      -1.28      -0.70      -0.77       0.38      -0.64
-participle             0.25          -      -0.19       0.22      -0.13      -0.34          -       0.75      -0.75
-place                 -0.90       0.73       1.16      -0.62       0.79       1.30      -0.75      -2.02       0.73
-pronoun               -0.39       1.05       2.79      -1.13      -0.39      -0.39       1.57       0.06      -0.46
-relative                  -       0.31      -0.36       0.20       0.80      -0.33          -          -          -
-there                 -0.90       0.27       0.56       0.44          -       0.91          -       1.40       1.53
-to                    -0.17       0.59       1.35      -1.14       0.15       0.89          -          -          -
-verb or noun           1.01      -1.18      -1.57       0.34       1.63      -1.42       1.36      -0.53      -1.35
-word                   0.51      -1.86      -0.13      -0.23       2.11      -0.05      -0.23       0.31      -0.81
+adjective                 -      -2.63       0.99      -0.93       2.26      -0.48       1.51      -0.52       0.60
+adverb                -0.51      -1.17       0.24      -0.52       0.18       2.27       1.83      -0.59       0.59
+be                     0.46       0.91      -2.68      -0.53      -0.88      -2.20       2.27      -1.64       1.64
+colon                  1.60       1.06      -1.71      -1.64      -0.89       1.27      -0.55      -0.59       1.11
+determiner            -0.96      -0.49       1.57       0.69       1.54      -0.30       0.49          -      -0.64
+digits                 1.52          -       0.17      -1.43      -0.55          -          -          -          -
+end                    0.58       1.42      -0.05      -1.21      -0.73       1.09      -0.54      -1.24       1.28
+joint                  0.59       1.82      -0.10      -0.94      -0.20       0.79      -0.73      -1.09       1.19
+of                     2.21       1.23      -2.24      -1.35      -1.28      -0.82      -0.79       0.41      -0.64
+participle             0.21          -          -       0.27      -0.26      -0.46          -       0.69      -0.68
+place                 -0.80       0.69       1.37      -0.55       0.79       1.25      -0.71      -1.82       0.83
+pronoun               -0.33       1.43       2.86      -0.96      -0.20      -0.29       1.27      -0.10      -0.35
+relative              -0.09       0.35      -0.40       0.14       0.89      -0.43          -          -          -
+there                 -0.97       0.25       0.39       0.42          -       0.91          -       1.48       1.53
+to                    -0.10       0.46       1.52      -1.05       0.15       0.84          -          -          -
+verb or noun           0.70      -1.29      -1.93       0.30       1.58      -1.74       1.32      -0.47      -1.11
+word                   0.43      -1.56      -0.27      -0.29       2.32          -      -0.24       0.28      -0.85
 """
 """Class of a word (columns) before the kind of the word after it (rows)."""
 
 _SINGLE = {
-    "-ing before a known noun": -1.25,
-    "-ing before a name": 2.06,
-    "-ing before an unknown noun": 0.32,
-    "-ing of a known noun": 1.03,
-    "-ing of a verb": 0.99,
-    "acronym": 0.96,
-    "capital within a sentence": 1.11,
-    "command before adjective": 1.01,
-    "command before adverb": -0.32,
-    "command before be": -0.92,
-    "command before colon": -1.78,
-    "command before determiner": 1.22,
-    "command before digits": -1.05,
-    "command before joint": -3.04,
-    "command before of": -1.71,
-    "command before participle": -0.36,
-    "command before place": -0.29,
-    "command before pronoun": 1.51,
-    "command before relative": 0.63,
-    "command before there": 1.11,
-    "command before to": 0.19,
-    "command before verb or noun": 0.43,
-    "command before word": -0.19,
-    "command like a thing": 0.66,
-    "command like a thing without an object": -0.43,
-    "command with an object and a place": 2.42,
-    "command, comma within a command": -1.67,
-    "command, comma within a command, after a subject": -1.59,
-    "command, comma within a open": 1.91,
-    "command, comma within a open, after a subject": -1.11,
-    "command, comma within a statement": -0.47,
-    "command, comma within a statement, after a subject": -0.25,
-    "command, conjunction within a command": 0.95,
-    "command, conjunction within a command, after a subject": 0.23,
-    "command, conjunction within a open": 1.51,
-    "command, conjunction within a open, after a subject": -1.18,
-    "command, conjunction within a statement": -0.25,
-    "command, conjunction within a statement, after a subject": 0.53,
-    "command, start": 0.32,
-    "command, subordinate": -0.27,
-    "find": 1.29,
-    "finite verb after a joint, within a command": 0.58,
-    "finite verb after a joint, within a open": -0.29,
-    "finite verb after a joint, within a statement": -1.13,
-    "finite verb after a modal verb": -0.83,
-    "form in -s": 0.54,
-    "form in -s of a known noun": 0.46,
-    "hardly a noun": 2.91,
-    "infinitive": 0.74,
-    "infinitive missing": -1.16,
-    "known compound begins": 3.75,
-    "known compound ends": 3.24,
-    "known noun in -ing": -2.72,
-    "left over": 0.59,
-    "modal may": 1.99,
-    "modal might": 1.37,
-    "modal need": 1.46,
-    "modal will": 1.40,
-    "never a plural": 3.47,
-    "noun after a plural": -3.15,
-    "object after a transitive verb": 0.86,
-    "other command": 0.08,
-    "participle like its base": -1.65,
-    "participle of a verb": 2.92,
-    "past like a noun": 0.95,
-    "past of a known noun": 0.33,
-    "past of a verb": 1.25,
-    "place after a verb of place": 0.69,
-    "place after another verb": -1.56,
-    "plain form": 1.20,
-    "plain form of a known noun": 0.10,
-    "plural after a determiner of one": -2.11,
-    "plural after a number": 2.20,
-    "put": 1.79,
-    "rather a noun": -1.72,
-    "rather a plural": -1.77,
-    "second verb of a clause": -2.66,
-    "singular after a number": -1.49,
-    "that": 0.38,
-    "unknown in -ed": 1.94,
-    "unknown in -ing": -0.16,
-    "unknown in -s": -2.64,
-    "unknown plain form": -3.25,
-    "unknown verb before adjective": -0.93,
-    "unknown verb before adverb": -1.53,
-    "unknown verb before be": -1.19,
-    "unknown verb before colon": -0.83,
-    "unknown verb before determiner": -1.32,
-    "unknown verb before digits": -0.70,
-    "unknown verb before end": -0.71,
-    "unknown verb before joint": -0.89,
-    "unknown verb before of": -0.32,
-    "unknown verb before participle": -0.77,
-    "unknown verb before place": -0.82,
-    "unknown verb before pronoun": -0.41,
-    "unknown verb before relative": -0.79,
-    "unknown verb before there": -0.55,
-    "unknown verb before to": -1.27,
-    "unknown verb before verb or noun": -0.59,
-    "unknown verb before word": -1.53,
-    "verb after a place only": -0.78,
-    "verb agrees": 0.49,
-    "verb disagrees": -2.05,
-    "verb missing": -0.14,
-    "verb of saying": 1.82,
-    "verb without a subject": -2.38,
+    "-ing before a known noun": -1.42,
+    "-ing before a name": 1.99,
+    "-ing before an unknown noun": 0.16,
+    "-ing of a known noun": 1.05,
+    "-ing of a verb": 1.21,
+    "acronym": 1.04,
+    "capital within a sentence": 1.10,
+    "command before adjective": 1.35,
+    "command before adverb": -0.29,
+    "command before be": -1.55,
+    "command before colon": -1.85,
+    "command before determiner": 1.40,
+    "command before digits": -1.06,
+    "command before end": 0.23,
+    "command before joint": -2.92,
+    "command before of": -1.37,
+    "command before participle": -0.31,
+    "command before pronoun": 1.26,
+    "command before relative": 0.85,
+    "command before there": 1.08,
+    "command before to": 0.39,
+    "command before verb or noun": 0.56,
+    "command like a thing": 0.53,
+    "command like a thing without an object": -0.42,
+    "command with an object and a place": 2.59,
+    "command, comma within a command": -1.72,
+    "command, comma within a command, after a subject": -1.74,
+    "command, comma within a open": 1.58,
+    "command, comma within a open, after a subject": -1.31,
+    "command, comma within a statement": -0.75,
+    "command, comma within a statement, after a subject": -0.54,
+    "command, conjunction within a command": 0.94,
+    "command, conjunction within a command, after a subject": 0.08,
+    "command, conjunction within a open": 0.79,
+    "command, conjunction within a open, after a subject": -1.57,
+    "command, conjunction within a statement": -0.57,
+    "command, start": 0.23,
+    "command, subordinate": -0.39,
+    "command, subordinate, after a subject": 0.59,
+    "find": 1.14,
+    "finite verb after a joint, within a command": 0.53,
+    "finite verb after a joint, within a open": -0.23,
+    "finite verb after a joint, within a statement": -1.08,
+    "finite verb after a modal verb": -1.13,
+    "form in -s": 0.53,
+    "form in -s of a known noun": 0.42,
+    "hardly a noun": 3.06,
+    "infinitive": 0.79,
+    "infinitive missing": -1.05,
+    "known compound begins": 3.93,
+    "known compound ends": 3.07,
+    "known noun in -ing": -2.57,
+    "left over": 0.78,
+    "modal can": -0.07,
+    "modal may": 2.15,
+    "modal might": 1.33,
+    "modal need": 1.45,
+    "modal will": 1.24,
+    "never a plural": 3.66,
+    "noun after a plural": -3.04,
+    "object after a transitive verb": 0.92,
+    "other command": -0.16,
+    "participle like its base": -1.60,
+    "participle of a verb": 2.89,
+    "past like a noun": 0.94,
+    "past of a known noun": 0.37,
+    "past of a verb": 1.44,
+    "place after a verb of place": 0.58,
+    "place after another verb": -1.51,
+    "plain form": 1.55,
+    "plain form of a known noun": 0.41,
+    "plural after a determiner of one": -1.99,
+    "plural after a number": 2.13,
+    "put": 1.58,
+    "rather a noun": -1.83,
+    "rather a plural": -1.87,
+    "second verb of a clause": -2.65,
+    "singular after a number": -1.59,
+    "that": 0.10,
+    "unknown in -ed": 1.95,
+    "unknown in -ing": 0.10,
+    "unknown in -s": -2.76,
+    "unknown plain form": -2.94,
+    "unknown verb before adjective": -1.01,
+    "unknown verb before adverb": -1.35,
+    "unknown verb before be": -1.21,
+    "unknown verb before colon": -0.87,
+    "unknown verb before determiner": -1.22,
+    "unknown verb before digits": -0.69,
+    "unknown verb before end": -0.92,
+    "unknown verb before joint": -0.97,
+    "unknown verb before of": -0.45,
+    "unknown verb before participle": -0.88,
+    "unknown verb before place": -0.86,
+    "unknown verb before pronoun": -0.87,
+    "unknown verb before relative": -1.20,
+    "unknown verb before there": -0.42,
+    "unknown verb before to": -1.33,
+    "unknown verb before verb or noun": -0.62,
+    "unknown verb before word": -0.95,
+    "verb after a place only": -0.79,
+    "verb agrees": 0.55,
+    "verb disagrees": -1.95,
+    "verb missing": -0.07,
+    "verb of saying": 1.87,
+    "verb without a subject": -2.22,
 }
 """Evidence of a word for one of its classes, and of its clause for or against a verb."""
 

@@ -174,3 +174,22 @@ def test_what_holders_have_and_labels_say_tells_places(text: str, expected: list
 
 def test_a_tray_after_the_label_of_a_jug_is_not_its_contents() -> None:
     assert asserted_if_any("Jug: tray. The cup is by the lamp.") == ["near(cup, lamp)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("To the statue's left (your right as you face it), place a cup.", ["left(cup, statue)"]),
+        ("Buy a rug to put under the lamp.", ["under(rug, lamp)"]),
+        ("You now have a bundle of shirts to place behind the crate.", ["behind(bundle, crate)"]),
+        ("Put the eggs where the air stays cool, normally behind the jug.", ["behind(eggs, jug)"]),
+        ("Roll ties loosely and place behind the crate.", ["behind(ties, crate)"]),
+    ],
+)
+def test_places_in_other_words_and_intended_places_are_read(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize("text", ["I have three cups to put on the box.", "The chest is too tall to stand on the box."])
+def test_plans_and_impossible_places_are_not_facts(text: str) -> None:
+    assert [fact for fact in asserted_if_any(text) if fact.startswith("on(")] == []

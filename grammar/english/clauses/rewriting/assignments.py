@@ -198,8 +198,8 @@ def _existing(chunks: list[Chunk], at: int) -> list[Chunk] | None:
     if types != ["THERE", "BE", "NP", "PREP", "NP", "PREP"] or not chunks[at + 1].value.positive:
         return None
     spot, relator, thing = chunks[at + 2].value, chunks[at + 3], chunks[at + 4].value
-    free = last_word(spot.head) in _GOOD_PLACES | {"room", "space"} and spot.determiner != "no"
-    if not free or word_of(relator) != "for" or not _names_things(thing, True):
+    free = last_word(spot.head) in _GOOD_PLACES and spot.determiner in ("a", "one")
+    if not free or word_of(relator) != "for" or not _names_things(thing, False):
         return None
     return [*chunks[:at], chunks[at + 4], chunks[at + 1], *chunks[at + 5 :]]
 

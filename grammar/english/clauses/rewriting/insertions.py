@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import (
     ENDS,
     PREDICATES,
@@ -16,7 +17,7 @@ from deixis.grammar.english.clauses.rewriting.editing import (
 )
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.function_words import READY
-from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
+from deixis.grammar.english.vocabulary.nouns import PEOPLE, VIEWER_WORDS, last_word
 from deixis.grammar.english.vocabulary.tables import word_set
 
 _CALLING = frozenset({"call", "name", "know", "mark", "label", "refer", "title", "term"})
@@ -74,6 +75,10 @@ def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             leave_out(inside, "this tells where a picture shows it")
             i = (closing or i) + 1  # 'bolt the legs to the top (left)'
             continue
+        if opened and _says_place_again(kept[-1], inside):
+            leave_out(inside, "this says the place before in other words")
+            i = (closing or i) + 1  # 'to its left (your right as you face it), place a cup'
+            continue
         if opened and _is_clause(inside) and type_at(chunks, (closing or i) + 1) not in ENDS:
             after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), *inside]
             i = (closing or i) + 1  # 'put the basket (mine is from a market) on the shelf'
@@ -130,6 +135,13 @@ def _directions_apart(chunks: list[Chunk], text: str) -> list[str]:
         text[slice(*b.span)].casefold() for a, b, c in inner if text[slice(*a.span)] + text[slice(*c.span)] == "()"
     )
     return [word for word in words if word in _BESIDE_THE_TEXT]
+
+
+def _says_place_again(before: Chunk, inside: list[Chunk]) -> bool:
+    """Return True for another name of the place before, as a person sees it: *(your right as you face it)*."""
+    place = before.type in ("NP", "ADV") and (before.type == "ADV" or is_place(before.value))
+    mine = inside[0].type == "NP" and is_place(inside[0].value) and inside[0].value.owner is not None
+    return place and mine and inside[0].value.owner.pronoun in VIEWER_WORDS
 
 
 def _is_clause(inside: list[Chunk]) -> bool:
