@@ -98,7 +98,7 @@ def _claims(graph: RelationGraph, claims: Sequence[Claim]) -> Iterator[_Edge]:
 
 
 def _content(claim: Claim) -> Hashable:
-    """Return everything that a claim says, but for its objects."""
+    """Return everything that a claim says except its objects."""
     return claim.relation, claim.value, claim.metres, claim.positive, claim.optional, claim.weight
 
 

@@ -58,7 +58,7 @@ def claims(draw: st.DrawFn, nodes: Sequence[str]) -> Claim:
 
 
 def meaning(claim: Claim, image: Mapping[str, str]) -> tuple[object, ...]:
-    """Return what a claim says of renamed objects."""
+    """Return what a claim states about renamed objects."""
     subjects, arguments = ([image[name] for name in names] for names in (claim.subjects, claim.arguments))
     if claim.relation == "row" and claim.value is None:
         subjects.sort()
