@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 from deixis.errors import OntologyError, UnknownTermError
 from deixis.ontology.rdf.vocabulary import DX, W3C
 from deixis.ontology.relations.allen import SYMBOLS, Allen, allen_mask
+from deixis.spelling import nearest
 
 if TYPE_CHECKING:
     import numpy as np
@@ -286,30 +286,6 @@ def plain_phrase(words: str) -> str:
 
 
 ARTICLES = frozenset({"the", "a", "an"})
-
-
-def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is spelt most like a word.
-
-    Parameters
-    ----------
-    word
-        The word.
-    known
-        The known words.
-
-    Returns
-    -------
-    str or None
-        The nearest word, or None if all are too different.
-
-    Examples
-    --------
-    >>> nearest("rihgt", ["left", "right"])
-    'right'
-    """
-    found = difflib.get_close_matches(word, sorted(known), n=1, cutoff=0.6)
-    return found[0] if found else None
 
 
 def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relation:

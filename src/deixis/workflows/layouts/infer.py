@@ -14,7 +14,7 @@ from deixis.errors import DeixisError, UnknownTermError
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.ontology.graph.facts import Fact
-from deixis.ontology.relations.relation import Relation, nearest
+from deixis.ontology.relations.relation import Relation
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.entailment.claim_facts import (
     ClaimFact,
@@ -28,6 +28,7 @@ from deixis.reasoning.entailment.demands import demands_of
 from deixis.reasoning.entailment.derivations import Derivation
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.reasoning.errors import OutOfTimeError, require_time_limit
+from deixis.spelling import nearest
 from deixis.workflows.layouts.read import as_script
 
 MAX_STEPS_LISTED = 12
