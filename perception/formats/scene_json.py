@@ -312,7 +312,7 @@ def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tupl
     if not isinstance(data, list | tuple) or len(data) not in counts:
         given = f"a list of {len(data)}" if isinstance(data, list | tuple) else json_type(data)
         raise SceneError(f"{where} must be a list of {' or '.join(map(str, counts))} numbers, got {given}")
-    return tuple(number(value, where) * scale for value in data)
+    return tuple(number(value, f"{where}[{i}]") * scale for i, value in enumerate(data))
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
