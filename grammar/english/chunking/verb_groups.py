@@ -470,7 +470,8 @@ class VerbChunker(RelatorChunker):
                 return Chunk("TPART", at, end, found)
             if imperative and norm in _INTRANSITIVE and self.nouns.is_determiner(end):
                 return Chunk("VERB", at, end, found)  # 'on the table, whose top is oak, lie a loaf and a knife'
-            if imperative and not subject_is_you and self.nouns.is_determiner(end):
+            ordered = self.nouns.is_determiner(end) or self._acts_on(i, end, form.kind)
+            if imperative and not subject_is_you and ordered:
                 return Chunk("DO", at, end, found)
             if subject == "REL":
                 return self._finite(at, end, found)
@@ -643,6 +644,11 @@ class VerbChunker(RelatorChunker):
         return after in ("back", "away", "aside", "here") or (
             after not in ("for", "at", "to") and not self.nouns.is_determiner(at) and self._relator(at) is not None
         )
+
+    def _acts_on(self, at: int, end: int, kind: str) -> bool:
+        """Return True for a verb of action before its object without an article: *rinse cups in the sink*."""
+        acts = kind == "other" and not self.nouns.is_noun(at) and not self.nouns.is_known_noun(self.norms[at])
+        return acts and self.nouns.starts(end)
 
     def _imperative_object(self, at: int) -> bool:
         bound = self.norms[at : at + 2] in (["at", "least"], ["at", "most"]) and self._measure(at) is None

@@ -10,7 +10,7 @@ from lark import Transformer, v_args
 
 from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.built import ALONG_WITH, Built, Noun, Predication, Verb, misunderstood, union
-from deixis.grammar.english.clauses.places import directions_of, is_place, other_side, place
+from deixis.grammar.english.clauses.places import arrangement_of, directions_of, is_place, other_side, place
 from deixis.grammar.english.clauses.predicates import (
     AWAY_FROM,
     DIRECTION_RELATIONS,
@@ -240,7 +240,11 @@ class Builder(Transformer[Any, Built]):
                 *rest, last = phrase.members  # 'A on the left and B on the right, next to C'
                 last = _restricted(last, mods)
                 phrase = replace(phrase, members=(*rest, last), span=union(phrase.span, last.span))
-            elif is_place(phrase) or phrase.pronoun in ("it", "they", "this") or phrase.members:
+            elif (
+                (is_place(phrase) and not _is_group(phrase))
+                or phrase.pronoun in ("it", "they", "this")
+                or phrase.members
+            ):
                 extra += tuple(mods)
             else:
                 phrase = _restricted(phrase, mods)
@@ -262,6 +266,7 @@ class Builder(Transformer[Any, Built]):
         first = members[0]
         if (
             is_place(first)
+            and not (_is_group(first) and any(member.determiner is not None for member in members[1:]))
             and first.of is not None
             and not any(is_place(m) and m.head in DIRECTION_WORDS for m in members[1:])
         ):
@@ -1090,6 +1095,11 @@ _ALIGNING = frozenset({"parallel", "perpendicular", "aligned", "level_with"})
 
 _SHARED_FROM = frozenset({"around", "middle"})
 """Other relations whose object belongs to a place before them as well: *on or around X*, *above and in the middle*."""
+
+
+def _is_group(phrase: NounPhrase) -> bool:
+    """Return True for *a stack of books*, which names things and not their place."""
+    return arrangement_of(phrase) is not None and phrase.of is not None
 
 
 def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tuple[Predicate, ...]]]:

@@ -50,6 +50,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     HOLDERS,
     PARTS,
     PEOPLE,
+    PLACES_OF,
     REMOVABLE,
     SURFACES,
     VIEWER_WORDS,
@@ -118,6 +119,19 @@ def _is_moved(clause: Clause, subject: NounPhrase) -> bool:
     """Return True for a part that a command puts somewhere, such as a leg of a chair that is assembled."""
     commanded = clause.mood is Mood.COMMAND and clause.span[0] < subject.span[0]
     return commanded and not any(p.relation in ("pointing", "facing") for p in clause.predicates)
+
+
+def _shown(clause: Clause) -> NounPhrase | None:
+    """Return the thing of *this is the closet in my room*, which shows it and is not about what was named before."""
+    subject, predicates = clause.subject, clause.predicates
+    pointing = subject is not None and subject.pronoun in ("this", "these") and not subject.head
+    if not pointing or len(predicates) != 1 or predicates[0].relation != "kind" or not predicates[0].positive:
+        return None
+    phrases = predicates[0].arguments
+    if len(phrases) != 1 or not phrases[0].head or phrases[0].head in PLACE_NOUNS or phrases[0].head in PLACES_OF:
+        return None
+    definite = phrases[0].determiner == "the" or phrases[0].owner is not None
+    return phrases[0] if definite and phrases[0].predicates and phrases[0].of is None else None
 
 
 _UNREAL = (UNREAL.search, SAID_AFTER.search, FRAMED.search, UNSURE.search, FUTURE.match)
@@ -323,6 +337,9 @@ class Discourse(Statements):
             return
         if clause.mood is Mood.STATEMENT and clause.condition is not None and not is_condition(clause.condition):
             clause = replace(clause, condition=None)
+        shown = _shown(clause)
+        if shown is not None:
+            clause = replace(clause, subject=replace(shown, predicates=()), predicates=shown.predicates)
         modal = clause.modal
         denied = tuple(p for p in clause.predicates if not p.positive)
         if modal in UNCERTAIN and clause.positive and 0 < len(denied) < len(clause.predicates):

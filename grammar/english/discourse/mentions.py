@@ -86,10 +86,15 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
         p.relation == "with" and all(a.predicates and last_word(a.head) not in PARTS for a in p.arguments)
         for p in phrase.predicates
     )  # 'in front of the guest with a fork on the left'
+    flanked = entity.role is Role.SURROUNDING and all(
+        p.relation == "with" and all(any(q.relation == "each_side" for q in a.predicates) for a in p.arguments)
+        for p in phrase.predicates
+    )  # 'against the wall with a lamp on either side'
     measured = entity.role is Role.SURFACE and all(p.relation.startswith("distance") for p in phrase.predicates)
     return (
         (around and bare)
         or measured
+        or flanked
         or on_it
         or spots
         or (wide and (bare or beside))
@@ -405,6 +410,7 @@ class Mentions(Drafting, ABC):
         if (phrase.pronoun in ("each", "other") and phrase.determiner in ("each",)) or phrase.pronoun == "another":
             return None
         owned = phrase.owner is not None and phrase.head and last_word(phrase.head) not in PARTS and not phrase.plural
+        owned = owned and phrase.owner is not None and phrase.owner.pronoun not in VIEWER_WORDS | {"we"}  # 'your sofa'
         if owned and subject is not None and subject.itself.members and self.how.quantifier == "each":
             return self._introduce(replace(phrase, owner=None, determiner=None, count=subject.size, plural=True))
         if (

@@ -462,7 +462,7 @@ class References:
                 coloured & leaf.adjectives for leaf in entity.leaves()
             ):  # fmt: skip
                 continue  # 'the white pieces' after '12 pieces'
-            if _is_one_of_a_kind(phrase, entity):
+            if _is_one_of_a_kind(phrase, entity) or _are_placed_apart(phrase, entity):
                 continue
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
@@ -607,8 +607,8 @@ class References:
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
             return self.picked(free[0], phrase)  # 'the post nearest the door'
         for adjective in phrase.adjectives:
-            if adjective.dimension == "position" and adjective.word in _MIDDLES and len(leaves) % 2 and len(leaves) > 1:
-                return self.picked(leaves[len(leaves) // 2], phrase)
+            if adjective.dimension == "position" and adjective.word in _MIDDLES and len(leaves) > 1:
+                return self.picked(leaves[len(leaves) // 2], phrase) if len(leaves) % 2 else None
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
                 return self.picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
             tag = _tag(adjective)
@@ -1186,6 +1186,14 @@ def _marks(phrase: NounPhrase) -> set[tuple[str, str]]:
         if predicate.relation == "ordinal" and predicate.value is not None and not predicate.reversed:
             marks.add(("ordinal", f"{predicate.value.rank} from {predicate.part}"))
     return marks
+
+
+def _are_placed_apart(phrase: NounPhrase, entity: Entity) -> bool:
+    """Return True for things that a position tells from those before: *the rear speakers* after *two speakers*."""
+    places = {("position", a.word) for a in phrase.adjectives if a.dimension == "position" and a.degree is Degree.PLAIN}
+    if not places or not phrase.plural or phrase.count is not None or not (entity.members or entity.plural):
+        return False
+    return not any(places & leaf.adjectives for leaf in (entity, *entity.leaves()))
 
 
 def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:

@@ -61,8 +61,12 @@ _MUTUAL = {"next_to": "near", "against": "touching"}
 
 _PARTS_OF_PAIRS = {
     ("top", "below"): "bottom", ("bottom", "above"): "top", ("left", "right"): "right", ("right", "left"): "left",
+    ("back", "in_front"): "front", ("front", "behind"): "back", ("far", "in_front"): "near", ("near", "behind"): "far",
 }  # fmt: skip
 """Part of the second of two things by the part of the first and the direction of the second."""
+
+_QUALITIES = frozenset({"size", "colour", "material", "shape", "state", "count", "kind", "height", "length", "surface"})
+"""Relations of drafts that say no place."""
 
 _ONE_BY_ONE = {"one behind": "behind", "one in front": "in_front"}
 """Relation of the first of two things to the second by the words for a row."""
@@ -153,6 +157,11 @@ class Relations(Mentions):
         single = subject.size == 1 and not subject.plural
         if relation == "each_side" and single and self.how.optional:
             relation = "next_to"  # 'the pump can stand on either side of the sink'
+        if relation == "each_side" and not predicate.arguments:
+            flanked = self._flanked(subject)
+            if flanked is not None:
+                self._pair(subject, relation, flanked, False)  # 'the mirror is here, with a light on each side'
+            return
         forms = all(last_word(a.head) in _FORMS and a.determiner not in ("the", "each") for a in predicate.arguments)
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
@@ -262,6 +271,10 @@ class Relations(Mentions):
         if regions and not entities:
             self._at_region(subject, relation, regions[0])
             return
+        if predicate.reversed and self._holds_inside(subject, predicate):
+            for thing in entities:  # 'the drawer has knives in front and forks in back'
+                self._add("part", (thing,), (subject,), value={"in_front": "front"}.get(relation, "back"))
+            return
         if relation == "between":
             if predicate.reversed:  # 'the comb and the razor, with a necklace between them'
                 both = [subject, *others[:1]] if subject.size == 1 and not subject.plural else [subject]
@@ -313,6 +326,24 @@ class Relations(Mentions):
                 self._add("part", (subject,), (other,), value=relation)
             else:
                 self._pair(subject, relation, other, predicate.reversed)
+
+    def _holds_inside(self, subject: Entity, predicate: Predicate) -> bool:
+        """Return True for *in front* and *in back* after what a drawer or a shelf has, which are parts of it."""
+        words = self.text[slice(*predicate.span)].casefold()
+        bare = re.search(r"\bin (?:front|back)\b(?!\s+of\b)", words) is not None
+        holder = last_word(subject.noun) in HOLDERS | VESSELS | SURFACES and subject.role is Role.THING
+        return predicate.relation in ("in_front", "behind") and bare and holder
+
+    def _flanked(self, subject: Entity) -> Entity | None:
+        """Return the thing that *on each side* is about: the subject before, of this sentence or the last one."""
+        before = [f for f in self.references.recent if f.subject is not None and f.subject.itself is not subject.itself]
+        if not before or before[0].sentence < self.how.sentence - 1 or not self.how.positive:
+            return None
+        thing = before[0].subject
+        if before[0].sentence != self.how.sentence:
+            self.how = self._guessed(Guess.OF_EARLIER)
+        single = thing is not None and thing.role is Role.THING and not (thing.itself.members or thing.plural)
+        return thing if single else None
 
     def _host_of(self, phrase: NounPhrase, relation: str, subject: Entity) -> Entity | None:
         """Return the thing before, of which *the rim* is: *the plate is here, with a knife across the rim*."""
@@ -604,11 +635,15 @@ class Relations(Mentions):
             and not GROUNDS.search(self.text[slice(*predicate.span)])
         ):
             before = next(f for f in self.references.recent if f.subject is not subject)
-            stated = self.drafts[-1] if self.drafts else None
-            level = stated.value if stated is not None and stated.relation == "part" and not stated.arguments else None
+            placed = [
+                d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation not in _QUALITIES
+            ]  # not 'small' of 'small pots in front'
+            stated = placed[-1] if placed and placed[-1].relation in ("part", "middle") else None
+            levels = [d.value for d in placed if d.relation == "part"]
+            level = levels[-1] if levels and stated is not None else None
             part = _PARTS_OF_PAIRS.get((level or "", predicate.relation))
-            if part is not None and stated is not None and stated.how.sentence == self.how.sentence:
-                self._add("part", (subject,), (), value=part)  # 'forks left, knives right'
+            if part is not None and stated is not None:
+                self._add("part", (subject,), stated.arguments, value=part)  # 'forks left, knives right'
                 return
             opposite = OPPOSITES.get(before.relation or "") == predicate.relation
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:

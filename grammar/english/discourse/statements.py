@@ -102,6 +102,11 @@ _SEEN_ON_THINGS = frozenset({"stack", "hang", "roll", "turn", "open"})
 """Such verbs whose participles tell a state that can be seen."""
 
 
+def _carries(subject: Entity) -> bool:
+    """Return True for what has glasses on it or in it, and not a glass as its part, as a clock has."""
+    return last_word(subject.noun) in SUPPORTS | SURFACES | VESSELS | HOLDERS
+
+
 class Statements(Relations):
     """Reader of predicates."""
 
@@ -358,7 +363,7 @@ class Statements(Relations):
                 and phrase.owner is None and not phrase.predicates and phrase.count is None
             ):  # fmt: skip
                 self._add("contents", (subject,), (), value=phrase.head)
-            elif last_word(phrase.head) in PARTS or phrase.head == "glass":
+            elif last_word(phrase.head) in PARTS or (phrase.head == "glass" and not _carries(subject)):
                 states = [a.word for a in phrase.adjectives if a.dimension == "state"]
                 if states:
                     self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")

@@ -232,6 +232,9 @@ ADVERBS = word_set(
     " crosswise squarely thus hence consequently accordingly"
     " dead bang smack slap ever least most more less super extremely overnight"
     " later soon finally twice thrice"
+    " oftentimes ofttimes nonetheless nevertheless likewise moreover furthermore altogether henceforth hereafter"
+    " sometime anyhow indeed thereby afterward beforehand presently meantime straightaway somehow forever regardless"
+    " indoors outdoors upstairs downstairs abroad overall everytime"
 )
 
 READY = word_set("cool dry ready cold warm hot firm done full set finished complete assembled level straight")

@@ -43,6 +43,8 @@ _ACTS = word_set(
     " behaviour respect honor honour pride fear anger surprise pleasure pain stress hurry rush chaos size weight hunch"
     " truth rumor rumour talent force pace rhythm war fight talk chat trip journey travel holiday birthday"
     " wedding funeral appetite hunger thirst duty arrival departure overview routine tutorial hint repeat"
+    " strike leak flow traffic mess splash burst touch pop dash breath breeze draft draught airflow glare odor odour"
+    " sunshine sunlight daylight moonlight germ mildew bacteria"
 )
 _TIMES = word_set(
     "time moment second minute hour day night morning afternoon evening week weekend month season year century age"
@@ -62,12 +64,13 @@ _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
     "measure area date help law company light case work support state finish use reach rest stage rule second"
-    " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
+    " initial standard connection view sound tip matter trace title name story plan order choice play step storage"
+    " turn notion"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
 _SELDOM_THINGS = word_set("level pitch bit outside inside")
 """Such words that the ontology knows, and that are seldom things by themselves."""
-_ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude", "acy", "ability", "ibility", "logy")
+_ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude", "acy", "ity", "logy")
 _CONCRETE = word_set(
     "station lotion potion cushion section illustration partition junction portion foundation extension invitation"
     " publication installation composition collection selection plantation solution caption mansion pension fraction"
@@ -79,6 +82,8 @@ _CONCRETE = word_set(
     " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
     " mechanism organism position settlement allotment"
+    " city cavity commodity facility utility university nativity vanity community deity entity extremity celebrity"
+    " necessity amenity novelty rarity oddity curiosity charity fraternity trinity"
 )
 """Words with the endings of abstract nouns that name things."""
 _QUALIFYING = ("ive", "ful", "less", "ous", "able", "ible", "iest", "cest", "gest")
@@ -116,7 +121,8 @@ _SUGGESTING = word_set("suggest recommend advise prefer think")
 """Verbs of persons, which are not nouns."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
-    " including having stuffing alternating filling"
+    " including having stuffing alternating filling storing grouping displaying organizing organising securing"
+    " installing tucking"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
 _VERBAL = ("bute", "tute", "cate", "nate", "rate", "ize", "ify", "duce", "clude", "scribe", "volve")

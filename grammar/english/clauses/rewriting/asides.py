@@ -56,6 +56,9 @@ _LAYERS = word_set("layer bed row line ring circle pile heap mound stack border 
 _USING = word_set("use need want like access reach handle")
 """Verbs of a person that tell things apart, and not where they are."""
 
+_PLACES_OF_AIMS = word_set("on inside under above behind in_front beside next_to near at around between left right")
+"""Relations after an infinitive of placing that are those of the thing before it."""
+
 _DONE_BY_MEANS = word_set(
     "attach connect fix fasten secure join link tie bolt screw nail glue tape strap clip clamp pin hook tuck roll fold"
     " wrap cover spread pour lower raise lift pull push insert install mount suspend"
@@ -137,15 +140,17 @@ def _free_place(chunks: list[Chunk], at: int) -> Run | None:
         chunks[at].type == "SUB" and chunks[at].value == "where" and type_at(chunks, at - 1) in ("BE", "VERB")
         and thing and type_at(chunks, at + 2) in FINITE
     )  # fmt: skip
+    named = thing and chunks[at].value == "where" and bool(chunks[at + 1].value.head)
     aside = (
         chunks[at].type in ("SUB", "REL") and chunks[at].value in ("where", None) and thing and not there
-        and chunks[at + 1].value.pronoun in ("it", "they", "you")
+        and (chunks[at + 1].value.pronoun in ("it", "they", "you") or named)
         and [type_at(chunks, at - k) for k in (2, 1)] == ["PUT", "NP"]
     )  # 'put it where it cannot fall, between the boxes'  # fmt: skip
     if not there and not free and not aside:
         return None
     end = end_before(chunks, at + 3, JOINT_TYPES)
-    if aside and [type_at(chunks, end + k) for k in (0, 1)] != ["COMMA", "PREP"]:
+    after = next((k for k in range(end + 1, len(chunks)) if chunks[k].type != "ADVERB"), len(chunks))
+    if aside and [type_at(chunks, end), type_at(chunks, after)] != ["COMMA", "PREP"]:
         return None
     return end + ((free or aside) and type_at(chunks, end) in ("COMMA", "COLON")), None
 
@@ -179,6 +184,17 @@ def _caused(chunks: list[Chunk], at: int) -> Run | None:
     if not caused or type_at(chunks, at + 4) not in JOINT_TYPES | {""} or not chunks[at].value.head:
         return None
     return unknown(chunks, at, at + 4) if chunks[at + 2].value.pronoun in ("it", "they") else None
+
+
+def _intended_place(chunks: list[Chunk], at: int) -> Run | None:
+    """Find the infinitive before the place that a thing is meant for: *a rug to put under the table*."""
+    named = at > 0 and chunks[at - 1].type == "NP" and bool(chunks[at - 1].value.head)
+    if not named or [type_at(chunks, at + k) for k in range(4)] != ["UNKNOWN", "UNKNOWN", "PREP", "NP"]:
+        return None
+    verb = next((k for k in range(at - 1, 0, -1) if chunks[k].type in FINITE), 0)
+    planned = verb and chunks[verb - 1].type == "NP" and chunks[verb - 1].value.pronoun in PERSONS - {"you"}
+    said = chunks[at].value == "to" and chunks[at + 1].value in PLACING_VERBS and not planned  # 'I have cups to put …'
+    return (at + 2, None) if said and chunks[at + 2].value.preposition.relation in _PLACES_OF_AIMS else None
 
 
 def _infinitive(chunks: list[Chunk], at: int) -> Run | None:
@@ -620,7 +636,8 @@ REWRITES = (
     without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement), without(_serving),
     without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),
     without(_measures_apart), without(_beneficiary), without(_purpose), without(_free_place), _without_comments,
-    without(_search), without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
+    without(_search), without(_intended_place),
+    without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
     without(_comparison_of_size), without(_posture_of_the_person), without(_apposition_of_object),
 )  # fmt: skip
 """Rewritings that leave out what tells no place, in their order; most report it."""
