@@ -409,7 +409,7 @@ class References:
             return self._remaining(phrase, latest_first)
         if self._is_ambiguous(phrase, latest_first):
             return None
-        beside = {e.noun for e in latest_first if e.noun != phrase.head and e.noun.split()[0] in _SIDE_DISHES}
+        beside = {e.noun for e in latest_first if e.noun != phrase.head and e.noun.partition(" ")[0] in _SIDE_DISHES}
         if phrase.head in ("plate", "bowl") and len(beside) > 1 and len(beside) == len({e.noun for e in latest_first}):
             return None  # 'the plate' after 'the bread plate' and 'the salad plate'
         comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
@@ -439,7 +439,7 @@ class References:
                 continue
             alone = not (entity.members or entity.plural or entity.single or entity.group is not None)
             named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
-            if alone and phrase.plural and phrase.count is None and (not named or entity.noun != phrase.head):
+            if alone and phrase.plural and phrase.count is None and (not named or entity.noun.endswith(f" {phrase.head}")):
                 continue  # 'the drums' after 'the bass drum'
             every = phrase.determiner in ("each", "every") or any(a.rank is not None for a in phrase.adjectives)
             if (
