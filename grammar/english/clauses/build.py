@@ -546,7 +546,9 @@ class Builder(Transformer[Any, Built]):
             rest = tuple(p for p in noun.phrase.predicates if p is not hour)
             noun = Noun(replace(noun.phrase, predicates=rest), extra)
             extra = (*extra, replace(hour, arguments=(noun.phrase,)))
-        if relation == "material" and (noun.phrase.members or noun.phrase.determiner in ("a", "an", "the", "no")):
+        things = noun.phrase.count is not None or (noun.phrase.plural and noun.phrase.head not in SUBSTANCES)
+        named = noun.phrase.members or noun.phrase.determiner in ("a", "an", "the", "no") or things
+        if relation == "material" and named:  # 'made up of four sections'
             misunderstood(span, "this says which things belong together, not where they are")
             return extra  # 'a set consisting of a fork and a knife'
         if relation == "material":
@@ -569,6 +571,7 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)  # 'in a festive meal', 'at one time'
         manner = relation == "by" and noun.phrase.head in _MANNERS
+        ruled = relation == "by" and noun.phrase.head in _RULES and noun.phrase.determiner == "the"
         unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
         if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:
             misunderstood(span, f"'{noun.phrase.head}' is not a place")  # 'by contrast', 'at dusk'
@@ -583,7 +586,7 @@ class Builder(Transformer[Any, Built]):
         idle = idle or (known_place and not noun.phrase.predicates)
         idle = idle or (relator.preposition.phrase == "before" and single and noun.phrase.count is None)
         idle = idle and noun.phrase.owner is None  # 'on display', but 'above your display'
-        if idle or (plain and manner):
+        if idle or (plain and manner) or ruled:
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
         if relation == "-":
@@ -1075,6 +1078,8 @@ _OCCASIONS = word_set(
     "meal dinner lunch breakfast supper luncheon brunch concert performance ceremony wedding rehearsal time interval"
 )
 """Nouns of what lasts or comes again, which nothing is in: *in a formal dinner*, *at equal intervals*."""
+_RULES = frozenset({"rule", "law", "custom", "tradition", "method", "principle", "book"})
+"""Nouns after which *by the* says how: *divide the desk by the rule of thirds*."""
 _MANNERS = word_set(
     "value price brand theme subject author mistake default law tradition custom rule accident chance colour color size"
     " hand name age height type kind length weight shape date number order"

@@ -50,7 +50,7 @@ AWAY_FROM = {"off": "on", "off of": "on", "out of": "inside"}
 _KEEPING = frozenset({"keep", "leave", "stay", "remain"})
 _REACHING = frozenset({"get", "come", "listen", "ask", "look"})
 """Verbs after which *at*, *to* and *for* name no place of the subject."""
-_AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind", "each_side"})
+_AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
 """Relations that, without an object, are to the thing that *with* describes: *a dish with the swabs inside*."""
 _COVERING = frozenset(
     {

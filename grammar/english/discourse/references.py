@@ -409,6 +409,9 @@ class References:
             return self._remaining(phrase, latest_first)
         if self._is_ambiguous(phrase, latest_first):
             return None
+        beside = {e.noun for e in latest_first if e.noun != phrase.head and e.noun.partition(" ")[0] in _SIDE_DISHES}
+        if phrase.head in ("plate", "bowl") and len(beside) > 1 and len(beside) == len({e.noun for e in latest_first}):
+            return None  # 'the plate' after 'the bread plate' and 'the salad plate'
         comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
         general = phrase.plural and phrase.determiner is None and phrase.owner is None and comparative
         if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
@@ -419,6 +422,7 @@ class References:
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
                 and entity.born < self.sentence and entity.noun == phrase.head and not _agreement(entity, phrase),
                 entity.compared,
+                entity.noun != phrase.head and entity.noun in beside,
                 phrase.head not in (entity.noun, *entity.aliases) and not entity.was_called(phrase.head),
                 -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
@@ -435,7 +439,7 @@ class References:
                 continue
             alone = not (entity.members or entity.plural or entity.single or entity.group is not None)
             named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
-            if alone and phrase.plural and phrase.count is None and not named:
+            if alone and phrase.plural and phrase.count is None and (not named or entity.noun.endswith(f" {phrase.head}")):
                 continue  # 'the drums' after 'the bass drum'
             every = phrase.determiner in ("each", "every") or any(a.rank is not None for a in phrase.adjectives)
             if (
@@ -1128,6 +1132,14 @@ def _can_name(head: str, entity: Entity) -> bool:
     return any(noun.split()[-len(words) :] == words for noun in (entity.noun, *entity.aliases))
 
 
+_SIDE_DISHES = frozenset({"bread", "salad", "side", "dessert", "butter", "soup", "cake", "rice", "finger", "pie"})
+"""First words of plates and bowls beside the one that *the plate* means."""
+_CORRESPONDING = frozenset(
+    {"corresponding", "respective", "appropriate", "designated", "provided", "indicated", "proper", "empty", "adjacent"}
+)
+"""Adjectives of a thing that the text tells by what it is for, and not by a name before."""
+
+
 def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
     """Return True for *the back door* after *the pantry door*: the longer name has no side.
 
@@ -1138,6 +1150,8 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
         if a.dimension in ("position", "colour", "material", "size") and a.degree is Degree.PLAIN
     }  # fmt: skip
     longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
+    if longer and any(a.word in _CORRESPONDING for a in phrase.adjectives):
+        return True
     if (
         not longer
         or not distinguishing

@@ -71,6 +71,9 @@ _KEPT = re.compile(
 _TURNS = frozenset({"step", "exception", "addition", "option", "choice", "thing", "item", "piece", "element"})
 """Nouns that *is* fills with a thing: *the last step is the napkin, which goes on the plate*."""
 
+_CUTLERY = frozenset({"spoon", "teaspoon", "fork", "knife", "straw", "stirrer", "ladle", "strainer", "lid", "tongs"})
+"""Nouns of single things that go with a vessel and that it need not hold."""
+
 _DETACHED = frozenset({"lid", "cap"})
 """Parts that are taken off their thing, and then have a place of their own."""
 _APART = frozenset(
@@ -344,6 +347,11 @@ class Statements(Relations):
             value = f"{predicate.value.rank} from {predicate.part or 'left'}"
             self._add("ordinal", (subject,), rest, value=value)
 
+    @staticmethod
+    def _is_tableware(head: str) -> bool:
+        """Return True for a noun of one thing, and not of a stuff: *saucer* of *a cup with saucer and spoon*."""
+        return last_word(head) in VESSELS | SUPPORTS | _CUTLERY
+
     def _say_with(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read what a thing has: contents, a part in some state, or another thing at it."""
         for phrase in predicate.arguments:
@@ -360,6 +368,7 @@ class Statements(Relations):
                 self._add(self.shared[0], (subject,), (thing,))
             elif phrase.head in SUBSTANCES or (
                 last_word(subject.noun) in VESSELS and phrase.head and phrase.determiner is None and not phrase.plural
+                and not self._is_tableware(phrase.head)
                 and phrase.owner is None and not phrase.predicates and phrase.count is None
             ):  # fmt: skip
                 self._add("contents", (subject,), (), value=phrase.head)

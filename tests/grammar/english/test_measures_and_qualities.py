@@ -63,6 +63,9 @@ def test_names_with_qualities_name_things(noun: str) -> None:
         "The lid can be removed.",
         "Place the cold pans out before the hot pans.",
         "The desk is in oak.",
+        "The band is made up of four sections.",
+        "Divide the desk by the rule of thirds.",
+        "Do not place soiled, chipped, or cracked jars and pans or bent or tarnished forks next to the jug.",
     ],
 )
 def test_acts_means_and_possible_states_are_not_stated(text: str) -> None:
@@ -97,6 +100,10 @@ def test_acts_means_and_possible_states_are_not_stated(text: str) -> None:
         ("Any type of napkin can be placed behind the jug.", ["behind(napkin, jug)"]),
         ("A selection of cheeses stands next to the jug.", ["next_to(cheeses, jug)"]),
         ("A simply folded napkin is laid behind the jug.", ["behind(napkin, jug)"]),
+        ("Sort papers into the box.", ["inside(papers, box)"]),
+        ("A cup of coffee with saucer and spoon stands behind the jug.", ["behind(cup, jug)"]),
+        ("Put the coins on the trade space, and the cards in the corresponding space.",
+         ["on(coins, trade_space)", "inside(cards, space)"]),
         ("In either case, place the plates next to the jug.", ["next_to(plates, jug)"]),
         ("Add the candles to glass jars of different sizes.", ["inside(candles, jars)"]),
         ("The southern wall is blue. Two boards lie above the jug: the cans sit on the upper one.",
@@ -110,3 +117,27 @@ def test_acts_means_and_possible_states_are_not_stated(text: str) -> None:
 )  # fmt: skip
 def test_facts_of_restricted_and_shared_phrases(text: str, expected: list[str]) -> None:
     assert asserted(text) == expected
+
+
+def test_lines_that_begin_with_capitals_are_sentences() -> None:
+    lines = (
+        "Place the tea cup and the saucer of each guest at the right of the spoons and behind the jug of milk",
+        "Set the small plates above the forks that are used for the cake, so that they can be reached with ease",
+        "Put a fork behind the jug of milk, with the tines up, where everyone who wants to use it can reach it",
+        "Serve the cheese with a knife, and never with the fingers, as some guests like to do when they are in a hurry",
+    )
+    reading = read_english("\n".join(lines)).reading
+    assert reading is not None
+    assert [sentence.text for sentence in reading.sentences] == list(lines)
+
+
+def test_wrapped_lines_are_one_sentence() -> None:
+    text = (
+        "The cup stands on the tray that my aunt brought back with her from a journey to the north of\n"
+        "Italy, next to the jug with the blue handle, which is the one that she used most often in\n"
+        "summer, and behind the jug there is a box of the biscuits that she liked to eat with her tea\n"
+        "when the whole family came to visit."
+    )
+    reading = read_english(text).reading
+    assert reading is not None
+    assert len(reading.sentences) == 1
