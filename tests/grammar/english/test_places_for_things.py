@@ -197,3 +197,8 @@ def test_plans_and_impossible_places_are_not_facts(text: str) -> None:
 
 def test_the_letter_a_after_a_noun_is_part_of_its_name() -> None:
     assert asserted("Attach panel B to panel A using four screws.") == ["touching(panel_b, panel_a)"]
+
+
+def test_things_told_by_their_use_are_not_those_named_before() -> None:
+    text = "Put heavy items in the middle of the pack. Put items you rarely use at the top of the pack."
+    assert asserted(text) == ["middle(items_1, pack)", "part(items_2, pack, 'top')"]
