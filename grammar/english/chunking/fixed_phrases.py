@@ -607,7 +607,9 @@ class FixedPhraseChunker(JointChunker):
         phrase = last.value
         if phrase.pronoun in ("anything", "everything", "something") and not phrase.head:
             last.value = replace(phrase, head="thing", pronoun=None, plural=True)
-        elif phrase.plural and last_word(phrase.head) in GENERAL and phrase.determiner in ("the", "those", "these", None):
+        elif (
+            phrase.plural and last_word(phrase.head) in GENERAL and phrase.determiner in ("the", "those", "these", None)
+        ):
             last.value = replace(phrase, determiner="some")  # not the heavy items that were named before
 
     def _end_of_user(self, at: int) -> int | None:
