@@ -607,8 +607,10 @@ class FixedPhraseChunker(JointChunker):
         phrase = last.value
         if phrase.pronoun in ("anything", "everything", "something") and not phrase.head:
             last.value = replace(phrase, head="thing", pronoun=None, plural=True)
-        elif phrase.plural and last_word(phrase.head) in GENERAL and phrase.determiner in ("the", "those", "these"):
-            last.value = replace(phrase, determiner=None)
+        elif (
+            phrase.plural and last_word(phrase.head) in GENERAL and phrase.determiner in ("the", "those", "these", None)
+        ):
+            last.value = replace(phrase, determiner="some")  # not the heavy items that were named before
 
     def _end_of_user(self, at: int) -> int | None:
         """Return the end of the person of such a clause: *you*, *most people*, *your children*."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from functools import cache
 
-from deixis.grammar.english.tagging.word_classes import FINITE, NOMINAL, WordClass, closed_words
+from deixis.grammar.english.tagging.word_classes import FINITE, NOMINAL, NOUN_OR_PREPOSITION, WordClass, closed_words
 from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Degree, Span
 from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective, is_material_noun
@@ -381,7 +381,10 @@ class NounFinder:
             return None
         before = self.norms[at - 1] if at else ""
         after = self.norms[at + 1]
-        if text == "A":
+        noun = at > 0 and self.words[at - 1].text.islower() and self._nouns.knows(before)
+        follows = after[:1].isalpha() and self._nouns.knows(after) and after not in NOUN_OR_PREPOSITION
+        inside = noun and not follows  # 'panel A using screws'
+        if text == "A" and not inside:
             form = self._verbs.get(after)
             named = (
                 not after[:1].isalpha() or after in self._closed or after in prepositions() or after in ("and", "or")

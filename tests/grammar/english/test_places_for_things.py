@@ -193,3 +193,12 @@ def test_places_in_other_words_and_intended_places_are_read(text: str, expected:
 @pytest.mark.parametrize("text", ["I have three cups to put on the box.", "The chest is too tall to stand on the box."])
 def test_plans_and_impossible_places_are_not_facts(text: str) -> None:
     assert [fact for fact in asserted_if_any(text) if fact.startswith("on(")] == []
+
+
+def test_the_letter_a_after_a_noun_is_part_of_its_name() -> None:
+    assert asserted("Attach panel B to panel A using four screws.") == ["touching(panel_b, panel_a)"]
+
+
+def test_things_told_by_their_use_are_not_those_named_before() -> None:
+    text = "Put heavy items in the middle of the pack. Put items you rarely use at the top of the pack."
+    assert asserted(text) == ["middle(items_1, pack)", "part(items_2, pack, 'top')"]
