@@ -267,3 +267,24 @@ def test_everyday_kinds_declare_what_they_use() -> None:
         term.value for quad in quads for term in (quad.predicate, quad.object) if isinstance(term, pyoxigraph.NamedNode)
     }
     assert {iri for iri in used if iri.startswith("https://w3id.org/deixis/onto#")} <= declared
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("cup_of_tea", "cup"),
+        ("plates_of_biscuits", "plate"),
+        ("bar_of_soap", "soap"),
+        ("stack_of_plates", "plate"),
+        ("slice_of_bread", "slice of bread"),
+        ("roll_of_tape", "roll"),
+    ],
+)
+def test_names_with_of_have_the_kind_of_vessel_or_portion(name: str, label: str) -> None:
+    kind, _ = default_ontology().of_name(name)
+    assert kind is not None and kind.label == label
+
+
+@pytest.mark.parametrize("name", ["block_of_wood", "strip_of_leather", "router"])
+def test_names_of_several_kinds_or_of_materials_have_no_kind(name: str) -> None:
+    assert default_ontology().of_name(name) == (None, None)
