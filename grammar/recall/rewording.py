@@ -15,6 +15,7 @@ _NUMBERS = {
     for number, name in enumerate(("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), 1)
 } | {"a": "1", "an": "1", "half an": "0.5"}
 _NUMBER_WORDS = "|".join(sorted(_NUMBERS, key=len, reverse=True))
+_SEVERAL = "|".join(name for name, number in _NUMBERS.items() if float(number) > 1)
 _COUNTED = re.compile(rf"\b({_NUMBER_WORDS}) (?=(?:second|minute|hour|day|week)s?\b)")
 
 _HERE = r"(?:here|there|around|present|at (?:the|this|my|our) (?:table|desk)|in (?:the|this|my|our) (?:room|kitchen))"
@@ -48,6 +49,38 @@ _REWORDED = tuple(
          r"under|near|next to|inside|above|below)\b.*? or (?:to the |on the |in )?(?:left|right|front|behind|on|"
          r"in|under|near|"
          r"next to|inside|above|below)\b.*$", r"where \1 \2"),
+        (r"^(where|when|what|who) (?:exactly|precisely)\b", r"\1"),
+        (r"^(what|who|which \w+) else\b", r"\1"),
+        (r"^(is|are|was|were|did|has|have) not\b", r"\1"),
+        (r"\bget (?:here|there|back)\b", "come"),
+        (r"\b(?:has |have |did )?changed? (?:its|their) (?:place|position)s?\b", "was moved"),
+        (r"^what (?:is|are) (?:still )?(?:left|remaining) (?=on\b)", "what is "),
+        (r"^(?:list|name|enumerate|the) (?:me )?(?:everything|(?:all )?(?:of )?the (?:things|"
+         r"objects))\b.*$", "what is there"),
+        (r"^the names? of ([a-z]+\d+)$", r"what is \1"),
+        (r"^how many (.+?) (?:do|can) you see\b", r"how many \1 are there"),
+        (rf"^(is|are|was|were) there (?:{_SEVERAL}|\d+) (?!second|minute|hour|day|"
+         rf"week)([\w -]+?s)\b",
+         r"how many \2 \1 there"),
+        (r"^since when (?:is|are|was|were|has|have) (.+?)(?: been)? there$", r"how long was \1 there"),
+        (r"^when did (.+?) (?:point (?:at|to)|show (?:you|me)|name) (.+)$", r"when was \2 shown"),
+        (r"^(?:what|which (?:names|words|things)) (?:did|have) you learn(?:ed|"
+         r"t)? about ", "what did anyone say about "),
+        (r"^what (?:is|was) the difference between (?:now and (.+)|(.+) and now)$",
+         lambda found: f"what changed since {found[1] or found[2]}"),
+        (r"^(?:did|have) you (?:see|seen|notice|noticed) (.+?) (?:being |get |get being |be )(moved|taken away|"
+         r"put down|taken)\b",
+         r"was \1 \2"),
+        (r" by (noon|midnight|\d{1,2}(?::\d{2})?(?: ?[ap]m)?)$", r" before \1"),
+        (r"^(?:has|have|did) (?:any|some) ?(?:one|body) seen? (.+)$", r"when did you last see \1"),
+        (r"^(what|which [\w ]+?) (?:lies|stands|sits|rests)\b", r"\1 is"),
+        (r"^where (?:has|have) ((?:the|my|our) (?:(?!been\b)[\w-]+ )+)been$", r"how long was \1there"),
+        (r"^who (?:said|told (?:you|me|us)) (?:that )?(?:the|an?|"
+         r"my) ([\w-]+) .+$", r"what did anyone say about the \1"),
+        (r"^who (?:came|arrived|was (?:here|there)) (first|last) [\w -]+ or [\w -]+$", r"who was there \1"),
+        (r"^how many (.+?) (?:are|is) (?:still )?left(?: over)?$", r"how many \1 are there"),
+        (r"^(?:(?:since )?when|how long) (?:is|was|has|have|were) (?:some|any)thing (?:been )?wrong\b"
+         r"|^when (?:was|were) (?:the|a|any) (?:mistake|fault|error)s? made\b", "what faults was there"),
         (r"^did (.+?) do (?:any|some)thing\b", r"what did \1 handle"),
         (r"^when (?:was|were) (.+?) last (?:seen )?(?:here|there|around|seen)\b", r"when did you last see \1"),
         (rf"^when did (.+?) (first|last) ({'|'.join(_DONE_AS)})\b", r"when did \1 \3 \2"),
@@ -114,12 +147,14 @@ _REWORDED = tuple(
          r"when was \1 shown first"),
         (r"^(who (?:taught|showed|told) you) (?:(?:about )?the (?:name|word)s?(?: (?:for|of))?|what|how) "
          r"(?:the |an? )?(.+?)(?: (?:is|are|was|means?|is called|looks? like))?$", r"\1 the \2"),
-        (rf"^what (?:did|have) you (?:just )?learn(?:ed|t)?(?: (?:from me|new))?{_TIMED}", "what was shown"),
+        (rf"^(?:what|which (?:names|words|things)) (?:did|have) you (?:just )?learn(?:ed|t)?(?: (?:from me|"
+         rf"new))?{_TIMED}", "what was shown"),
         (r"^what (?:kind|sort|type) of (?:thing|object|item) (is|was)\b", r"what \1"),
         (r"^what (?:do|did|would) you call ([a-z]+\d+|(?:this|that|it)(?: one)?)$", r"what is \1"),
         (r"^what is (?:the )?name (?:of|for) ([a-z]+\d+)\b", r"what is \1"),
         (r"^what (is|are|was|were) ([a-z]+\d+)(?: called| named)?\b", r"what \1 called \2"),
-        (r"^(?:which|what)(?: one| thing| object)s? (is|are|was|were) (?:called |named )?(the (?!first|last)[\w -]+)$",
+        (r"^(?:which|what)(?: one| thing| object)?s? (?:of (?:the|these|those) \w+ )?(is|are|was|were) "
+         r"(?:called |named )?((?:the|an?) (?!first|last)[\w -]+)$",
          r"which thing \1 called \2"),
         (r"^(is|was|are|were) ([a-z]+\d+) (?:really |still )?(?:an?|the|called|named) (?:an? |the )?",
          r"\1 \2 called "),
@@ -197,7 +232,8 @@ _REWORDED = tuple(
         (r"^what have you been shown\b", "what was shown"),
         (r"^what (?:(?:was|has been) said|(?:have you been|were you) (?:told|taught)) about\b",
          "what did anyone say about"),
-        (r"^(?:did|have|has) (.+?) (?:ever )?(?:mention(?:ed)?|talk(?:ed)? about|sa(?:y|id) anything about) ",
+        (r"^(?:did|have|has) (.+?) (?:ever )?(?:mention(?:ed)?|talk(?:ed)? about|sa(?:y|id) anything about|"
+         r"t(?:ell|old) (?:you|me|us) (?:anything )?about) ",
          r"what did \1 say about "),
         (r"^what do you (?:know|remember) about\b", "what did anyone say about"),
         (rf"^did {_ANYONE} (?:take|remove|clear)(?: away| off)? (.+?)(?=$| since| before| after| at| in| between)",
@@ -252,7 +288,7 @@ _PREFACE = re.compile(
     r"do you (know|remember|recall)|(did|have) you noticed?|can you (remember|say)|any idea|"
     r"i (want|would like|'d like) to know|i wonder)\s+)+(?=(where|what|which|who|when|since|how|if|whether|is|"
     r"are|was|were|"
-    r"did|has|have|on|at|in|for|from|until|do|does|by|everything|all|describe)\b)"
+    r"did|has|have|on|at|in|for|from|until|do|does|by|everything|all|describe|the name)\b)"
 )
 """Words before a question that do not belong to it."""
 

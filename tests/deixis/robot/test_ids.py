@@ -14,8 +14,8 @@ from deixis.robot.ids import IdError, with_names
 from deixis.robot.robot import Told
 from deixis.workflows.knowledge.unlearn import Selection
 
-LOW = [[0, 0, 0], [0.1, 0, 0], [0.4, 0, 0], [0.5, 0, 0]]
-HIGH = [[0.03, 0.2, 0.02], [0.35, 0.25, 0.02], [0.43, 0.2, 0.02], [0.53, 0.2, 0.02]]
+LOW: list[list[float]] = [[0, 0, 0], [0.1, 0, 0], [0.4, 0, 0], [0.5, 0, 0]]
+HIGH: list[list[float]] = [[0.03, 0.2, 0.02], [0.35, 0.25, 0.02], [0.43, 0.2, 0.02], [0.53, 0.2, 0.02]]
 SUPPER = "This is how 'supper' is laid. The fork is left of the plate and the knife is right of the plate."
 
 

@@ -60,6 +60,9 @@ _WRONG = re.compile(
 _ASKED_NOW = re.compile(r"\W*(?:what|which|is|are)\b", re.IGNORECASE)
 """Beginning of such a question, which recognised speech has without a question mark."""
 
+_FIRST_VERB = re.compile(r"\b(?:is|are|(?P<past>was|were|did|has|have))\b", re.IGNORECASE)
+"""Auxiliary verb of a question."""
+
 _TOLD = re.compile(r"\b(tell|told|say|said)\b", re.IGNORECASE)
 """Words of questions about what was said."""
 
@@ -449,7 +452,9 @@ def _is_of_another_time(question: str) -> bool:
         read = read_question(question)
     except RecallQuestionError:
         return False
-    return read.kind in ("fault", "gone", "whether_did") and read.when.kind not in ("unstated", "now")
+    verb = _FIRST_VERB.search(question)
+    is_past = verb is not None and verb["past"] is not None
+    return read.kind in ("fault", "gone", "whether_did") and (is_past or read.when.kind not in ("unstated", "now"))
 
 
 def _without_place(error: DeixisError) -> str:

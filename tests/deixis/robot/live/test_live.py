@@ -60,6 +60,7 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         robot.says("layout cups; cup inside mug; mug inside cup")
         robot.says("t99 is left of the plate.")
         robot.says("What was wrong in the last hour?")
+        robot.says("Was the fork ever missing?")
         robot.says("t3 is a bowl.")
         robot.says("t3 is a cup.")
         robot.says("t99 is a bowl.")
@@ -111,6 +112,7 @@ def test_descriptions_that_cannot_be_teach_nothing(ran: Ran) -> None:
 
 def test_past_mistakes_are_recalled(ran: Ran) -> None:
     assert heard(ran, "robot: The plate is missing, ", "(inferred")
+    assert heard(ran, "robot: Yes: the fork went at ")
 
 
 def test_greetings_and_thanks_get_a_reply(ran: Ran) -> None:
