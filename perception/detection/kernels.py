@@ -18,6 +18,9 @@ _BUCKETS = 1024
 _BUCKET_COST = 1 / 16
 """Range of the costs in a bucket, below that of most steps."""
 
+_STRIP_ROWS = 48
+"""Number of rows of an image that are averaged at once."""
+
 _STRIP = 32
 """Number of pixels of a row whose neighbourhoods are summed at once."""
 
@@ -95,6 +98,17 @@ def in_frame(points, frame, eye):  # type: ignore[no-untyped-def]
     return result, heights, distance
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def depths_below(heights, growth, band):  # type: ignore[no-untyped-def]
+    """Return the depths below 0 and above ``-band`` of heights (n,) divided by the ``growth`` of the noise (n,)."""
+    result, count = np.empty(len(heights)), 0
+    for i in range(len(heights)):
+        scaled = heights[i] / growth[i]
+        result[count] = -scaled
+        count += scaled < 0 and scaled > -band
+    return result[:count]
+
+
 @njit(cache=True, nogil=True)
 def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
     """Return values (n,) averaged repeatedly with those of neighbours that differ by at most ``apart`` (n,)."""
@@ -110,6 +124,53 @@ def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
             after[i] = total / count
         before, after = after, before
     return before
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def averaged_pixels(values, row, column, shape, apart, rounds):  # type: ignore[no-untyped-def]
+    """Return values (n,) of pixels averaged repeatedly with those of adjacent pixels, as ``averaged`` does.
+
+    ``row`` and ``column`` (n,) are the pixels of an image of ``shape`` rows and columns, in the order of the rows.
+
+    Notes
+    -----
+    Strips of the image are averaged one after the other, each with the rows around it, so that they stay in a cache.
+    Pixels without a value are infinite and so differ from all others.
+    """
+    height, width = _STRIP_ROWS + 2 * rounds + 2, shape[1] + 2
+    images = np.empty((3, height, width))
+    before, after, limit = images[0], images[1], images[2]
+    result, start, n = np.empty(len(values)), 0, len(values)
+    for top in range(0, shape[0], _STRIP_ROWS):
+        while start < n and row[start] < top - rounds:
+            start += 1
+        images[:] = np.inf
+        end = start
+        while end < n and row[end] < top + _STRIP_ROWS + rounds:
+            r, c = row[end] - top + rounds + 1, column[end] + 1
+            before[r, c], limit[r, c] = values[end], apart[end]
+            end += 1
+        for _ in range(rounds):
+            for r in range(1, height - 1):
+                above, own, below = before[r - 1], before[r], before[r + 1]
+                most, mean = limit[r], after[r]
+                for c in range(shape[1]):
+                    middle, total, count = own[c + 1], own[c + 1], 1.0
+                    for k in range(3):
+                        near = abs(above[c + k] - middle) <= most[c + 1]
+                        total, count = total + (above[c + k] if near else 0.0), count + (1.0 if near else 0.0)
+                    for k in range(0, 3, 2):
+                        near = abs(own[c + k] - middle) <= most[c + 1]
+                        total, count = total + (own[c + k] if near else 0.0), count + (1.0 if near else 0.0)
+                    for k in range(3):
+                        near = abs(below[c + k] - middle) <= most[c + 1]
+                        total, count = total + (below[c + k] if near else 0.0), count + (1.0 if near else 0.0)
+                    mean[c + 1] = total / count
+            before, after = after, before
+        for i in range(start, end):
+            if top <= row[i] < top + _STRIP_ROWS:
+                result[i] = before[row[i] - top + rounds + 1, column[i] + 1]
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -130,6 +191,36 @@ def grown(seeds, allowed, neighbours):  # type: ignore[no-untyped-def]
                 stack[count] = j
                 count += 1
     return reached
+
+
+@njit(cache=True, nogil=True)
+def grown_pixels(seeds, allowed, row, column, shape):  # type: ignore[no-untyped-def]
+    """Return a mask as ``grown`` does, of points (n,) whose neighbours are the adjacent pixels.
+
+    ``row`` and ``column`` (n,) are the pixels of an image of ``shape`` rows and columns.
+    """
+    n, width = len(seeds), shape[1] + 2
+    waiting = np.zeros((shape[0] + 2) * width, np.bool_)  # allowed and not yet reached, with a border
+    reached = np.zeros(len(waiting), np.bool_)
+    stack, count = np.empty(n, np.int32), 0
+    for i in range(n):
+        at = (row[i] + 1) * width + column[i] + 1
+        if seeds[i]:
+            reached[at], stack[count], count = True, at, count + 1
+        else:
+            waiting[at] = allowed[i]
+    while count:
+        count -= 1
+        at = stack[count]
+        for start in (at - width - 1, at - 1, at + width - 1):
+            for other in range(start, start + 3):
+                if waiting[other]:
+                    waiting[other], reached[other], stack[count] = False, True, other
+                    count += 1
+    result = np.empty(n, np.bool_)
+    for i in range(n):
+        result[i] = reached[(row[i] + 1) * width + column[i] + 1]
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -404,6 +495,48 @@ def least_axes(moments):  # type: ignore[no-untyped-def]
         size = np.sqrt(length)
         result[i, 0], result[i, 1], result[i, 2] = x / size, y / size, z / size
     return result
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def measures_of_parts(part, chosen, sizes, weights, middles, normals, tints, areas):  # type: ignore[no-untyped-def]
+    """Measure the parts of the ``chosen`` (k,) of s patches, which are given by ``part`` (k,), from 0 to p - 1.
+
+    Returns
+    -------
+    Lower and upper corner, centre and mean colour of each part, shape (p, 3) each, and an array (4, p): the sums of
+    the sizes and of the areas, the standard deviation of the colours, and the bulge.
+    """
+    count = part.max() + 1 if len(part) else 0
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    centres, colours = np.zeros((count, 3)), np.zeros((count, 3))
+    totals, total_weights, out = np.zeros((4, count)), np.zeros(count), np.zeros(count)
+    for k in range(len(part)):
+        p, i = part[k], chosen[k]
+        totals[0, p] += sizes[i]
+        totals[1, p] += areas[i]
+        total_weights[p] += weights[i]
+        for axis in range(3):
+            low[p, axis], high[p, axis] = min(low[p, axis], middles[i, axis]), max(high[p, axis], middles[i, axis])
+            centres[p, axis] += middles[i, axis] * sizes[i]
+            colours[p, axis] += tints[i, axis] * weights[i]
+    for p in range(count):
+        for axis in range(3):
+            centres[p, axis] /= totals[0, p]
+            colours[p, axis] /= total_weights[p]
+    for k in range(len(part)):
+        p, i = part[k], chosen[k]
+        varied, along, away = 0.0, 0.0, 0.0
+        for axis in range(3):
+            varied += (tints[i, axis] - colours[p, axis]) ** 2
+            along += (middles[i, axis] - centres[p, axis]) * normals[i, axis]
+            away += (middles[i, axis] - centres[p, axis]) ** 2
+        totals[2, p] += varied * weights[i]
+        totals[3, p] += along * sizes[i]
+        out[p] += np.sqrt(away) * sizes[i]
+    for p in range(count):
+        totals[2, p] = np.sqrt(totals[2, p] / total_weights[p])
+        totals[3, p] /= max(out[p], 1e-9)
+    return low, high, centres, colours, totals
 
 
 @njit(cache=True, nogil=True)

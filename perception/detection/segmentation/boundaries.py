@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.quantiles import median
 from deixis.perception.detection.segmentation.supervoxels import Supervoxels, sums
 from deixis.perception.detection.segmentation.surface import Surface
 from deixis.perception.detection.settings import BoundarySettings, DetectionSettings
@@ -59,7 +60,7 @@ def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettin
     pairs, lengths, jumped = meetings(patches.of, surface.neighbours, surface.points, surface.jump, len(patches))
     i, j = pairs.T
     sigma = sums(patches.of, surface.sigma) / patches.sizes
-    apart = np.median(np.linalg.norm(patches.middles[i] - patches.middles[j], axis=1)) if len(pairs) else 0.0
+    apart = median(np.linalg.norm(patches.middles[i] - patches.middles[j], axis=1)) if len(pairs) else 0.0
     step = np.maximum(
         max(settings.step, limits.step_distance_ratio * apart), limits.step_noise_ratio * np.maximum(sigma[i], sigma[j])
     )
