@@ -81,6 +81,19 @@ def refine(points, tolerance, normal, offset, shares):  # type: ignore[no-untype
 
 
 @njit(cache=True, nogil=True)
+def gathered(points, places):  # type: ignore[no-untyped-def]
+    """Return the points (n, 3) at some places (m,) in double precision, shape (m, 3), and the corners of their box."""
+    result, box = np.empty((len(places), 3)), np.empty((2, 3))
+    box[0], box[1] = np.inf, -np.inf
+    for i in range(len(places)):
+        for axis in range(3):
+            value = float(points[places[i], axis])
+            result[i, axis] = value
+            box[0, axis], box[1, axis] = min(box[0, axis], value), max(box[1, axis], value)
+    return result, box
+
+
+@njit(cache=True, nogil=True)
 def in_frame(points, frame, eye):  # type: ignore[no-untyped-def]
     """Return points (n, 3) moved by a transform (4, 4), their heights (n,), and distances (n,) from ``eye`` (3,).
 
@@ -357,53 +370,60 @@ def planes_in_image(points, row, column, radius, reach, eye, steps):  # type: ig
 
     Notes
     -----
-    The sums over the neighbourhoods of a strip of a row are made at once, pixel by pixel of the neighbourhood, so that
-    the processor adds several at a time. Points on the surface within the radius are nearly always those that paths
-    from neighbour to neighbour reach.
+    The sums over the neighbourhoods of a strip of a row are made at once, two pixels of the neighbourhood after the
+    other, so that the processor adds several at a time and keeps them for two additions. Points on the surface within
+    the radius are nearly always those that paths from neighbour to neighbour reach.
     """
     n = len(points)
     around = np.abs(steps).max()
     low = (row.min() - around, column.min() - around)
     shape = (row.max() - low[0] + around + 1, column.max() - low[1] + around + _STRIP)
-    image = np.full((3, shape[0], shape[1]), 1e9)  # of pixels without a point, which are out of reach
+    image = np.full((3, shape[0] + 1, shape[1]), 1e9)  # of pixels without a point, which are out of reach
     for i in range(n):
         for axis in range(3):
             image[axis, row[i] - low[0], column[i] - low[1]] = points[i, axis]
     middles, moments = np.empty((n, 3)), np.empty((6, n))
-    sums, squares = np.empty((10, _STRIP)), np.empty(_STRIP)
-    count, sx, sy, sz = sums[0], sums[1], sums[2], sums[3]
-    sxx, sxy, sxz, syy, syz, szz = sums[4], sums[5], sums[6], sums[7], sums[8], sums[9]
+    totals, squares = np.empty((10, _STRIP)), np.empty(_STRIP)
+    count, sx, sy, sz = totals[0], totals[1], totals[2], totals[3]
+    sxx, sxy, sxz, syy, syz, szz = totals[4], totals[5], totals[6], totals[7], totals[8], totals[9]
     start = 0
     while start < n:
         end, first, farthest = start, column[start], 0.0
-        squares[:], sums[:] = -1.0, 0.0
+        squares[:], totals[:] = -1.0, 0.0
         while end < n and row[end] == row[start] and column[end] < first + _STRIP:
             squares[column[end] - first] = radius[end] * radius[end]
             farthest = max(farthest, reach[end])
             end += 1
         width, r, c = column[end - 1] - first + 1, row[start] - low[0], first - low[1]
         x, y, z = image[0, r, c : c + _STRIP], image[1, r, c : c + _STRIP], image[2, r, c : c + _STRIP]
-        for step in range(len(steps)):
-            down, right = steps[step, 0], steps[step, 1]
-            if down * down + right * right > farthest * farthest:
-                break
-            u = image[0, r + down, c + right : c + right + _STRIP]
-            v = image[1, r + down, c + right : c + right + _STRIP]
-            w = image[2, r + down, c + right : c + right + _STRIP]
+        inside = 0
+        while inside < len(steps) and steps[inside, 0] ** 2 + steps[inside, 1] ** 2 <= farthest * farthest:
+            inside += 1
+        for step in range(0, inside, 2):
+            down, right = r + steps[step, 0], c + steps[step, 1]
+            u, v, w = image[0, down], image[1, down], image[2, down]
+            u, v, w = u[right : right + _STRIP], v[right : right + _STRIP], w[right : right + _STRIP]
+            down, right = shape[0], 0  # of an odd number of pixels, the last one is without a point
+            if step + 1 < inside:
+                down, right = r + steps[step + 1, 0], c + steps[step + 1, 1]
+            p, q, s = image[0, down], image[1, down], image[2, down]
+            p, q, s = p[right : right + _STRIP], q[right : right + _STRIP], s[right : right + _STRIP]
             for k in range(width):
+                limit = squares[k]
                 dx, dy, dz = u[k] - x[k], v[k] - y[k], w[k] - z[k]
-                near = dx * dx + dy * dy + dz * dz <= squares[k]
-                dx, dy, dz = dx if near else 0.0, dy if near else 0.0, dz if near else 0.0
-                count[k] += 1.0 if near else 0.0
-                sx[k] += dx
-                sy[k] += dy
-                sz[k] += dz
-                sxx[k] += dx * dx
-                sxy[k] += dx * dy
-                sxz[k] += dx * dz
-                syy[k] += dy * dy
-                syz[k] += dy * dz
-                szz[k] += dz * dz
+                near = dx * dx + dy * dy + dz * dz <= limit
+                dx, dy, dz, one = dx if near else 0.0, dy if near else 0.0, dz if near else 0.0, 1.0 if near else 0.0
+                ex, ey, ez = p[k] - x[k], q[k] - y[k], s[k] - z[k]
+                near = ex * ex + ey * ey + ez * ez <= limit
+                ex, ey, ez, two = ex if near else 0.0, ey if near else 0.0, ez if near else 0.0, 1.0 if near else 0.0
+                count[k] = count[k] + one + two
+                sx[k], sy[k], sz[k] = sx[k] + dx + ex, sy[k] + dy + ey, sz[k] + dz + ez
+                sxx[k] = sxx[k] + dx * dx + ex * ex
+                sxy[k] = sxy[k] + dx * dy + ex * ey
+                sxz[k] = sxz[k] + dx * dz + ex * ez
+                syy[k] = syy[k] + dy * dy + ey * ey
+                syz[k] = syz[k] + dy * dz + ey * ez
+                szz[k] = szz[k] + dz * dz + ez * ez
         for i in range(start, end):
             k = column[i] - first
             mx, my, mz = sx[k] / count[k], sy[k] / count[k], sz[k] / count[k]

@@ -1,4 +1,4 @@
-"""Coordinates of points along axes, in blocks."""
+"""Coordinates of points along axes, in blocks, and lengths of vectors."""
 
 from __future__ import annotations
 
@@ -37,4 +37,27 @@ def coordinates(points: NDArray[np.floating], axes: NDArray[np.float64]) -> NDAr
     result = np.empty((len(points), *axes.shape[:-1]))
     for start in range(0, len(points), _BLOCK):
         np.matmul(points[start : start + _BLOCK], axes.T, out=result[start : start + _BLOCK])
+    return result
+
+
+def norms(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the lengths of vectors in space: ``np.linalg.norm(vectors, axis=1)``, several times as fast.
+
+    Parameters
+    ----------
+    vectors
+        Vectors of shape (n, 3).
+
+    Returns
+    -------
+    ndarray
+        Lengths of shape (n,).
+
+    Examples
+    --------
+    >>> norms(np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 2.0]])).tolist()
+    [5.0, 2.0]
+    """
+    x, y, z = vectors.T
+    result: NDArray[np.float64] = np.sqrt(x * x + y * y + z * z)
     return result

@@ -115,7 +115,8 @@ def _is_raised(surface: Surface, piece: NDArray[np.intp], below: NDArray[np.intp
     below, plan = below[inside], plan[inside]
     if len(below) < limits.min_ring_points or surface.normals[below, 2].mean() < limits.min_level_normal:
         return False
-    away = cKDTree(places[:, :2]).query(plan, distance_upper_bound=limits.reach)[0]
+    tree = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False)
+    away = tree.query(plan, distance_upper_bound=limits.reach)[0]
     ring = below[(away > limits.edge) & (away < limits.reach)]
     if len(ring) < limits.min_ring_points or surface.normals[ring, 2].mean() < limits.min_level_normal:
         return False

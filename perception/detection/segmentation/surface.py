@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.quantiles import median
 from deixis.perception.detection.settings import SurfaceSettings
+from deixis.reasoning.geometry.coordinates import norms
 from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 
@@ -69,7 +70,7 @@ def surface_of(
     """
     from deixis.perception.detection.kernels import gaps, mixed, planes, planes_in_image
 
-    distance = np.linalg.norm(points - eye, axis=1)
+    distance = norms(points - eye)
     apart = gaps(points, neighbours)
     known = (apart / np.maximum(distance, 1e-6))[apart >= 0]
     # the mean distance of eight neighbours is 1.2 sides of a pixel; it grows with the distance from the sensor

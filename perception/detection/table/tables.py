@@ -50,9 +50,11 @@ def tables(view: View, settings: DetectionSettings) -> Iterator[FoundTable]:
         top = table_top(left, plane, settings)
         own = _own_pose(pose if pose.known else view.pose, top, settings)
         yield FoundTable(plane, top, replace(left, pose=own))
-        left = left.take(np.flatnonzero(~top.is_below))
-        enough = len(left.points) >= settings.plane.min_inlier_share * len(points)
-        plane = _another(left.points, plane, own, settings) if enough else None
+        beside = np.flatnonzero(~top.is_below)
+        if len(beside) < settings.plane.min_inlier_share * len(points):
+            return
+        left = left.take(beside)
+        plane = _another(left.points, plane, own, settings)
 
 
 def _own_pose(pose: CameraPose, top: TableTop, settings: DetectionSettings) -> CameraPose:
