@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import islice
 
 import numpy as np
@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.density import evenly_dense
-from deixis.perception.detection.left_out import Above, Fate, Pieces, holes, left_out, missing_lines, odd_sizes
+from deixis.perception.detection.left_out import (
+    Above,
+    Fate,
+    Pieces,
+    far_note,
+    holes,
+    left_out,
+    missing_lines,
+    odd_sizes,
+)
 from deixis.perception.detection.outline import corners_of, hull_of, occupied_cells, oriented_box, rim_of, upright_box
 from deixis.perception.detection.quantiles import median, medians, percentiles
 from deixis.perception.detection.segmentation.boundaries import agglomerated, boundaries
@@ -21,7 +30,7 @@ from deixis.perception.detection.segmentation.lying import with_lying_things
 from deixis.perception.detection.segmentation.parts import Parts
 from deixis.perception.detection.segmentation.supervoxels import supervoxels
 from deixis.perception.detection.segmentation.surface import Surface, surface_of
-from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.settings import DetectionSettings, ScaleSettings
 from deixis.perception.detection.shown import Shows, is_bare_table, is_large, is_one_object, is_small
 from deixis.perception.detection.table.heights import Raised, raised
 from deixis.perception.detection.table.neighbours import (
@@ -47,7 +56,7 @@ from deixis.perception.detection.table.viewpoint import (
 )
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import DEFAULT_VIEWPOINT, OrientedBox, PerceivedObject, Scene
-from deixis.reasoning.geometry.coordinates import coordinates
+from deixis.reasoning.geometry.coordinates import coordinates, norms
 
 BACKGROUND = -1
 """Label of a point that does not belong to an object."""
@@ -160,28 +169,59 @@ def detect(
     >>> abs(found.table.normal).round(3).tolist(), found.boxes.shape, found.notes
     ([0.0, 0.0, 1.0], (0, 2, 3), ('nothing is on the table',))
     """
-    settings = settings or DetectionSettings()
+    settings = settings or _default_settings()
+    seen = _seen(cloud, settings)
+    if seen is None:
+        raise CloudError("a cloud without one finite point cannot be used; check the depth image")
+    view, notes = seen
+    found = _detected(cloud, view, settings, stage or (lambda name: None))
+    return replace(found, notes=(*found.notes, *notes))
+
+
+def _seen(cloud: PointCloud, settings: DetectionSettings, is_whole: bool = True) -> tuple[View, tuple[str, ...]] | None:
+    """Return the points of a cloud that are used, and notes on others that have a depth; None without any point.
+
+    A part of a cloud is not checked for its unit, as it may be small.
+    """
+    from deixis.perception.detection.kernels import gathered
+
     kept = finite_places(cloud)
     if not len(kept):
-        raise CloudError("a cloud without one finite point cannot be used; check the depth image")
-    points = cloud.points.take(kept, axis=0).astype(np.float64)
+        return None
+    points, box = gathered(cloud.points, kept)
     few = points[:: max(1, len(points) // 10_000)]
-    spread = median(np.linalg.norm(few - medians(few), axis=1))
-    if spread > settings.scale.max_median_radius:
+    middle, limits = medians(few), settings.scale
+    if is_whole:
+        _require_metres(few, middle, limits)
+    notes: tuple[str, ...] = ()
+    if np.abs(box - middle).max() > limits.max_radius:
+        near = np.flatnonzero((np.abs(points - middle) <= limits.max_radius).all(axis=1))
+        notes = (far_note(len(points) - len(near), limits.max_radius),)
+        points, kept = points.take(near, axis=0), kept[near]
+    view = View(points, kept, cloud.organised, camera_pose_of(cloud, settings))
+    return evenly_dense(view, settings), notes
+
+
+def _require_metres(points: NDArray[np.float64], middle: NDArray[np.float64], limits: ScaleSettings) -> None:
+    """Raise CloudError for points (n, 3) around a ``middle`` (3,) whose unit cannot be metres."""
+    spread = median(norms(points - middle))
+    if spread > limits.max_median_radius:
         raise CloudError(
             f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
             " coordinates must be metres: divide millimetres by 1000, or set the depth_scale of a depth image"
         )
-    if len(few) > 100 and spread < settings.scale.min_median_radius:
+    if len(points) > 100 and spread < limits.min_median_radius:
         raise CloudError(
             f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
             " coordinates must be metres: check the unit, or the depth_scale of the intrinsics"
         )
-    view = evenly_dense(View(points, kept, cloud.organised, camera_pose_of(cloud, settings)), settings)
+
+
+def _detected(cloud: PointCloud, view: View, settings: DetectionSettings, begin: Callable[[str], None]) -> Detection:
+    """Return the objects on a table in a view of a cloud, or what else it shows."""
     points = view.points
     if len(points) >= settings.least_points and is_small(points, settings):
         return _alone(cloud, view, settings)
-    begin = stage or (lambda name: None)
     begin(FINDING_TABLE)
     seen = list(islice(tables(view, settings), settings.table + 1))
     if len(seen) < settings.table and settings.table > 1:
@@ -199,6 +239,11 @@ def detect(
     if len(seen) > settings.table:
         return replace(found, shows=Shows.TABLES, notes=(*found.notes, _more(settings.table)))
     return found if settings.table == 1 else replace(found, shows=Shows.TABLES)
+
+
+@cache
+def _default_settings() -> DetectionSettings:
+    return DetectionSettings()
 
 
 def detect_above(cloud: PointCloud, plane: Plane, settings: DetectionSettings | None = None) -> Detection | None:
@@ -219,14 +264,13 @@ def detect_above(cloud: PointCloud, plane: Plane, settings: DetectionSettings | 
         Objects above the plane, with the frame of the part of the table that is in view; None if no point of the cloud
         is finite, or the plane does not show a table.
     """
-    settings = settings or DetectionSettings()
-    kept = finite_places(cloud)
-    if not len(kept):
+    settings = settings or _default_settings()
+    seen = _seen(cloud, settings, is_whole=False)
+    if seen is None:
         return None
-    points = cloud.points.take(kept, axis=0).astype(np.float64)
-    view = View(points, kept, cloud.organised, camera_pose_of(cloud, settings))
-    view = evenly_dense(view, settings)
-    return _on_table(cloud, FoundTable(plane, table_top(view, plane, settings), view), settings)
+    view, notes = seen
+    found = _on_table(cloud, FoundTable(plane, table_top(view, plane, settings), view), settings)
+    return found and replace(found, notes=(*found.notes, *notes))
 
 
 def _has_objects(found: Detection | None, seen: list[FoundTable], settings: DetectionSettings) -> bool:

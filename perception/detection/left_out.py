@@ -149,6 +149,25 @@ def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSet
     return bool((both & (outside >= settings.min_overhang_points)).any())
 
 
+def far_note(count: int, radius: float) -> str:
+    """Return a note on points that are too far from the others to be measured.
+
+    Parameters
+    ----------
+    count
+        Number of these points.
+    radius
+        Distance in metres from the middle of the cloud beyond which points are left out.
+
+    Returns
+    -------
+    str
+        One sentence.
+    """
+    some, were = ("one point", "was") if count == 1 else (f"{count} points", "were")
+    return f"{some} more than {radius:.0f} m from the middle of the cloud {were} left out; check their depth"
+
+
 def missing_lines(view: View) -> tuple[str, ...]:
     """Return a note if many rows or columns of an image have no depth between others that have it.
 
