@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from enum import StrEnum
 
@@ -267,3 +270,19 @@ def test_everyday_kinds_declare_what_they_use() -> None:
         term.value for quad in quads for term in (quad.predicate, quad.object) if isinstance(term, pyoxigraph.NamedNode)
     }
     assert {iri for iri in used if iri.startswith("https://w3id.org/deixis/onto#")} <= declared
+
+
+def test_the_key_of_the_kinds_is_the_same_in_every_process() -> None:
+    """A memory records the key, and updates its inferences step by step while the key stays the same."""
+    program = "from deixis.ontology.tbox import load_ontology; print(load_ontology().kinds_key)"
+    keys = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in "123"
+    }
+    assert len(keys) == 1
