@@ -294,7 +294,7 @@ def test_names_of_several_kinds_or_of_materials_have_no_kind(name: str) -> None:
 
 
 def test_the_key_of_the_kinds_is_the_same_in_every_process() -> None:
-    """A memory records the key, and updates its inferences step by step while the key stays the same."""
+    """Check the key that a memory records, which must stay the same for updates step by step."""
     program = "from deixis.ontology.tbox import load_ontology; print(load_ontology().kinds_key)"
     keys = {
         subprocess.run(
