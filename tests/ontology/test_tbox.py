@@ -273,7 +273,7 @@ def test_everyday_kinds_declare_what_they_use() -> None:
 
 
 def test_the_key_of_the_kinds_is_the_same_in_every_process() -> None:
-    """A memory records the key, and updates its inferences step by step while the key stays the same."""
+    """Compare the key that a memory records: it updates its inferences step by step while the key stays the same."""
     program = "from deixis.ontology.tbox import load_ontology; print(load_ontology().kinds_key)"
     keys = {
         subprocess.run(
