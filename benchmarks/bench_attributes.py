@@ -21,7 +21,8 @@ from records import command_line, recorded, share
 
 from deixis.learning.attributes import measured
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.attributes.attribute import DIMENSIONS, KIND, MEASURES, Attribute, Example
 
 Array = NDArray[np.float64]

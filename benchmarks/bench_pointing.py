@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 from records import command_line, figure, recorded, share
 
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.pointing import aim
 from deixis.perception.pointing.gesture import Gesture, gestures
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.simulator.teacher import Aim, PointingNoise, Teacher
 from deixis.workflows.scenes.point import size_weights
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from deixis.errors import OntologyError
+from deixis.ontology.inflection import singulars
 from deixis.ontology.kept import kept
 from deixis.ontology.rdf.triple_index import TripleIndex
 from deixis.ontology.rdf.triples import content_key
@@ -122,9 +123,11 @@ class Ontology:
         known = self.kinds.words.get(spaced(noun))
         if known is not None:  # without reading the lexicon
             return known
-        senses, before = self.kinds.head_noun(noun)
-        end = spaced(noun)[len(before) :].strip()
-        if len(senses) < 2 or end in self.kinds.words:
+        head = self.kinds.headed(spaced(noun))
+        senses, before = self.kinds.head_noun(head)
+        end = head[len(before) :].strip()
+        usual = end if self.kinds.senses(end) else singulars(end)[0]
+        if len(senses) < 2 or usual in self.kinds.words:
             return next(iter(senses), None)
         first, *others = (self.sizes.of(kind.iri) for kind in senses)
         return senses[0] if all(first.is_about_as_large_as(other) for other in others) else None

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage, Optics, TableView, table_view
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.reference import Reference

@@ -70,10 +70,19 @@ class Kind:
         return self.iri.rsplit("#", 1)[-1]
 
 
-MEASURES = frozenset(
-    {"bit", "bunch", "couple", "group", "kind", "lot", "number", "pair", "piece", "set", "slice", "sort", "type"}
-)
-"""Nouns before *of* that leave the kind to the noun after it: a pair of scissors is scissors."""
+MEASURES = frozenset({
+    "array", "assortment", "bar", "bit", "blob", "bunch", "bundle", "cake", "chunk", "clump", "cluster",
+    "collection", "column", "cone", "couple", "crumb", "cube", "dab", "deck", "dollop", "dozen", "drop", "fan",
+    "fistful", "flight", "group", "handful", "heap", "hunk", "kind", "knob", "lot", "lump", "number", "pair", "pat",
+    "pellet", "piece", "pile", "pinch", "portion", "puddle", "range", "row", "scoop", "scrap", "selection",
+    "series", "serving", "set", "sheet", "shred", "slab", "slice", "sliver", "sort", "splash", "sprig", "stack",
+    "stalk", "stick", "strand", "strip", "suite", "tablet", "tangle", "teaspoonful", "tuft", "type", "variety",
+    "wad", "wedge", "wisp",
+})  # fmt: skip
+"""Nouns before *of* that leave the kind to the noun after it: a pair of scissors is scissors, a bar of soap is soap.
+
+They tell how many, how much or which shape. Vessels and rolls (*cup*, *spool*) are things of their own.
+"""
 
 
 class FurtherKinds(Protocol):
@@ -220,6 +229,31 @@ class Kinds:
             self._heads[key] = self._find_head(key)
         return self._heads[key]
 
+    def headed(self, noun: str) -> str:
+        """Return the part of a noun phrase with *of* that names the thing: the cup of *cup of tea*.
+
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        str
+            The phrase before *of*; after a measure, such as *pair*, the phrase after it; a phrase that names a kind as
+            a whole, and one without *of*, as it is.
+
+        Examples
+        --------
+        >>> from deixis.ontology.tbox import default_ontology
+        >>> [default_ontology().kinds.headed(noun) for noun in ("cup of tea", "pair of scissors", "slice of bread")]
+        ['cup', 'scissors', 'slice of bread']
+        """
+        if " of " not in noun or self.senses(noun):
+            return noun
+        first, _, second = noun.partition(" of ")
+        return self.headed(second) if singulars(first)[0].rpartition(" ")[2] in MEASURES else first
+
     def is_a(self, kind: Kind, broader: Kind) -> bool:
         """Return whether a kind is a broader one or a subclass of it.
 
@@ -268,16 +302,12 @@ class Kinds:
         return iri in self._by_iri
 
     def _find_head(self, noun: str) -> tuple[tuple[Kind, ...], str]:
-        if " of " in noun and not self.senses(noun):
-            first, _, second = noun.partition(" of ")
-            measure = singulars(first)[0].rpartition(" ")[2]
-            return self.head_noun(second if measure in MEASURES else first)
-        words = noun.split()
+        words = self.headed(noun).split()
         for start in range(len(words)):
             end = " ".join(words[start:])
             if found := dict.fromkeys(kind for one in (end, *singulars(end)) for kind in self.senses(one)):
                 return tuple(found), " ".join(words[:start])
-        return (), noun
+        return (), " ".join(words)
 
     @property
     def _further_kinds(self) -> Mapping[str, Kind]:

@@ -55,7 +55,8 @@ from deixis.perception.detection.table.viewpoint import (
     verified_pose,
 )
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import DEFAULT_VIEWPOINT, OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
 from deixis.reasoning.geometry.coordinates import coordinates, norms
 
 BACKGROUND = -1

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import OutlineSettings
-from deixis.perception.scene import OrientedBox, turned_axes
+from deixis.perception.oriented_box import OrientedBox, turned_axes
 from deixis.reasoning.geometry.coordinates import coordinates
 
 SECTORS = 36

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import SceneError
-from deixis.perception.scene import DEFAULT_VIEWPOINT, OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
 
 UPRIGHT_TOLERANCE = 1e-3
 """Maximum difference from 1 of the cosine between the third axis of an upright box and the vertical."""

@@ -21,16 +21,8 @@ from deixis.perception.checks import MAX_SHOWN, mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.coco import coco_scene, is_coco
 from deixis.perception.formats.labelme import is_labelme, labelme_scene
-from deixis.perception.scene import (
-    DEFAULT_VIEWPOINT,
-    PLACED_VIEWER,
-    UNITS,
-    UNNAMED,
-    Heading,
-    OrientedBox,
-    PerceivedObject,
-    Scene,
-)
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import DEFAULT_VIEWPOINT, PLACED_VIEWER, UNITS, UNNAMED, Heading, PerceivedObject, Scene
 from deixis.text_files import no_such_file
 
 Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]

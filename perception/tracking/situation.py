@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import DEFAULT_VIEWPOINT, OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
 
 State = Literal["seen", "hidden", "gone"]
 

@@ -6,7 +6,7 @@ changed places if all facts about them would hold with the objects exchanged, an
 another violated fact, the misplaced end is the one with the larger share of violated facts.
 
 A claim (a place, a distance, an arrangement) is violated if what is measured is nearer to its opposite; see
-:mod:`deixis.reasoning.comparison.claims`.
+:mod:`deixis.reasoning.grounding.answers.claims`.
 
 A violated statement of direction (*the fork points away*) does not misplace its object: it is *turned*, and the check
 says by how much it must be turned back.
@@ -36,16 +36,15 @@ from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.graph import RelationGraph, dispensable
 from deixis.ontology.things.colours import Colour, Colours
 from deixis.ontology.things.kinds import Kinds, with_article
-from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims, violated
 from deixis.reasoning.comparison.turning import Turned, is_aim, turned_roles
 from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding, Outcome
+from deixis.reasoning.grounding.answers.claims import ClaimOutcome, outcomes_of_claims, violated
 from deixis.reasoning.grounding.answers.members import assignment_of, broken_of_members
 from deixis.reasoning.grounding.engines.engine import Engine
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
 from deixis.reasoning.grounding.evidence.properties.colours import other_colours
 from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
 from deixis.reasoning.grounding.evidence.properties.unary import OUTLIERS
-from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
@@ -202,7 +201,8 @@ def check_table(
     spare = dispensable(layout.facts())
     otherwise = _miscoloured(evidence, grounding, seen, colours)
     checked = [claim for claim in evidence.claims if not _is_colour_of_role(claim, colours)]
-    claims = _check_claims(evidence, checked, grounding, members)
+    filled = {name: match.perceived for name, match in grounding.matches.items()}
+    claims = outcomes_of_claims(evidence, checked, filled, members)
     scene = evidence.scene
     turned = turned_roles(broken, list(violated(claims)), scene.nodes, scene.boxes, scene.poses)
     roles = []
@@ -270,27 +270,6 @@ def _member_roles(
         verdict = RoleVerdict.MISPLACED if any(not is_aim(entry.fact) for entry in broken) else verdict
         text, confidence = (label.text, label.confidence) if label else (None, None)
         yield RoleCheck(role, verdict, thing, text, confidence, broken, turned=turned.get((role, thing), ()))
-
-
-def _check_claims(
-    evidence: Evidence, claims: Sequence[Claim], grounding: Grounding, members: Mapping[str, Members]
-) -> tuple[ClaimOutcome, ...]:
-    """Return the outcomes of claims: of one about a group, those of all members that violate it, or else of one."""
-    scene, models = evidence.scene, evidence.meaning.models or shipped_models()
-    words, filled = evidence.description.vocabulary, {r: match.perceived for r, match in grounding.matches.items()}
-
-    def checked(some: Sequence[Claim], filled: Mapping[str, str]) -> tuple[ClaimOutcome, ...]:
-        return check_claims(
-            some, filled, scene.nodes, scene.boxes, words, models, evidence.metric, evidence.surface, scene.poses
-        )
-
-    found: list[ClaimOutcome] = []
-    for claim, outcome in zip(claims, checked(claims, filled), strict=True):
-        group = claim.subjects[0] if len(claim.subjects) == 1 else None
-        outcomes = [checked([claim], {**filled, group: thing})[0] for thing in members.get(group or "", ()) if group]
-        wrong = [entry for entry in outcomes if entry.verdict in (ClaimVerdict.VIOLATED, ClaimVerdict.WAIVED)]
-        found += wrong or [outcome]
-    return tuple(found)
 
 
 def _is_colour_of_role(claim: Claim, colours: Colours | None) -> bool:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
-from deixis.reasoning.comparison.claims import ClaimOutcome
 from deixis.reasoning.geometry.poses import TOOL_STRETCH, Poses, bearings
 from deixis.reasoning.grounding.answers.answer import FactOutcome
+from deixis.reasoning.grounding.answers.claims import ClaimOutcome
 from deixis.reasoning.grounding.evidence.claims.aims import AIMING, is_of_handle, stated_direction
 
 AIMED_AT = {"faced_by": "facing", "pointed_at_by": "pointing"}

@@ -3,7 +3,7 @@
 >>> from deixis.reasoning.description_logic.terms import Triple
 >>> from deixis.reasoning.description_logic.terms import SUB_CLASS_OF
 >>> Words({"<urn:Fork>": "fork"}).triple(Triple("<urn:Fork>", SUB_CLASS_OF, "<urn:t#Cutlery>"))
-'every fork is Cutlery'
+'every fork is a Cutlery'
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from urllib.parse import unquote
 
+from deixis.ontology.things.kinds import with_article
 from deixis.reasoning.description_logic.axioms import Axiom
 from deixis.reasoning.description_logic.terms import (
     DISTINCT_MEMBERS,
@@ -32,16 +33,16 @@ from deixis.reasoning.description_logic.terms import (
 )
 
 _STATEMENTS = {
-    SUB_CLASS_OF: "every {0} is {1}",
+    SUB_CLASS_OF: "every {0} is {a1}",
     term("owl:equivalentClass"): "{0} and {1} are the same",
     term("owl:disjointWith"): "{0} and {1} have nothing in common",
-    term("owl:complementOf"): "whatever is not {1} is {0}",
+    term("owl:complementOf"): "whatever is not {a1} is {a0}",
     term("rdfs:subPropertyOf"): "whatever is related by '{0}' is related by '{1}'",
     term("owl:equivalentProperty"): "'{0}' and '{1}' are equivalent",
     term("owl:propertyDisjointWith"): "nothing is related by both '{0}' and '{1}'",
     term("owl:inverseOf"): "'{0}' is the inverse of '{1}'",
-    term("rdfs:domain"): "whatever is '{0}' of something is {1}",
-    term("rdfs:range"): "whatever something is '{0}' of is {1}",
+    term("rdfs:domain"): "whatever is '{0}' of something is {a1}",
+    term("rdfs:range"): "whatever something is '{0}' of is {a1}",
     term("owl:sameAs"): "{0} and {1} are one thing",
     term("owl:differentFrom"): "{0} and {1} are two things",
     term("owl:propertyChainAxiom"): "a chain of {1} makes '{0}'",
@@ -185,9 +186,7 @@ class _Sentence:
                 )
             for predicate in _STATEMENTS:
                 if predicate in objects:
-                    return _STATEMENTS[predicate].format(
-                        self._expression(subject), self._expression(objects[predicate])
-                    )
+                    return self._statement(subject, predicate, objects[predicate])
             return f"something is {_a(self._expression(obj))}"
         if predicate == TYPE:
             characteristic = _CHARACTERISTICS.get(obj)
@@ -197,8 +196,12 @@ class _Sentence:
         if predicate == SUB_CLASS_OF and obj == NOTHING:
             return f"nothing can be {_a(self._expression(subject))}"
         if predicate in _STATEMENTS:
-            return _STATEMENTS[predicate].format(self._expression(subject), self._expression(obj))
+            return self._statement(subject, predicate, obj)
         return f"{self._words.name(predicate)}({self._expression(subject)}, {self._expression(obj)})"
+
+    def _statement(self, subject: str, predicate: str, obj: str) -> str:
+        first, second = self._expression(subject), self._expression(obj)
+        return _STATEMENTS[predicate].format(first, second, a0=_a(first), a1=_a(second))
 
     def _expression(self, node: str) -> str:
         """Return a class expression, a list, or a name."""
@@ -213,7 +216,7 @@ class _Sentence:
                     return form.format(p=prop, v=self._expression(objects[predicate]), c=kind)
             return f"something with '{prop}'"
         if term("owl:complementOf") in objects:
-            return f"something that is not {self._expression(objects[term('owl:complementOf')])}"
+            return f"something that is not {_a(self._expression(objects[term('owl:complementOf')]))}"
         if term("owl:inverseOf") in objects:
             return f"the inverse of {self._expression(objects[term('owl:inverseOf')])}"
         for predicate, between in _JOINED.items():
@@ -231,6 +234,5 @@ class _Sentence:
 
 
 def _a(name: str) -> str:
-    if name.startswith("something"):
-        return name
-    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"
+    """Return the name of a class with its article; other expressions as they are."""
+    return name if name.startswith(("something", "nothing", "(")) else with_article(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,9 @@ from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 from deixis.reasoning.grounding.reference.answer import Frame
+
+if TYPE_CHECKING:
+    from deixis.reasoning.grounding.answers.claims import ClaimOutcome
 
 SENSITIVITY_SHARE = 0.1
 """Share of the time limit for computing what would change without each fact."""
@@ -108,7 +112,17 @@ def ground(
         sides=() if verdict is None else tuple((one.side, one.probability) for one in verdict.sides),
         seconds=time.perf_counter() - started,
     )
-    return with_members(found, in_order) if evidence.uncounted else found
+    found = with_members(found, in_order) if evidence.uncounted else found
+    return replace(found, claims=_claims(in_order, found)) if in_order.claims else found
+
+
+def _claims(evidence: Evidence, found: Grounding) -> tuple[ClaimOutcome, ...]:
+    """Return the outcomes of the claims of the description."""
+    from deixis.reasoning.grounding.answers.claims import outcomes_of_claims
+
+    filled = {name: match.perceived for name, match in found.matches.items()}
+    members = {name: [one.perceived for one in group] for name, group in found.members.items()}
+    return outcomes_of_claims(evidence, evidence.claims, filled, members)
 
 
 def _standing(posterior: Posterior | None) -> Standing:

@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from deixis.ontology.relations.relation import Relation
     from deixis.perception.clouds.cloud import PointCloud
     from deixis.perception.formats.scene_json import read_scene
-    from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+    from deixis.perception.oriented_box import OrientedBox
+    from deixis.perception.scene import PerceivedObject, Scene
     from deixis.reasoning.activities.grounding import ActivityGrounding, RecognisedActivity
     from deixis.reasoning.activities.prediction import Prediction
     from deixis.reasoning.description_logic.entailment import Entailment
@@ -170,7 +171,7 @@ _HOMES = {
     "Look": "deixis.robot.looking",
     "Match": "deixis.ontology.lessons.types",
     "Meaning": "deixis.reasoning.grounding.evidence.words.meaning",
-    "OrientedBox": "deixis.perception.scene",
+    "OrientedBox": "deixis.perception.oriented_box",
     "PerceivedObject": "deixis.perception.scene",
     "Placements": "deixis.workflows.knowledge.habits",
     "PointCloud": "deixis.perception.clouds.cloud",

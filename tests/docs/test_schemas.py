@@ -238,7 +238,10 @@ def test_every_command_with_json_has_a_schema_on_the_page() -> None:
         if "--json" in options(command, context)
     }
     assert known and _listed().keys() == known
-    assert set().union(*_listed().values()) | {"fact", "claim", *LINES, *OF_INPUT, *OF_PYTHON} == SCHEMAS.keys()
+    assert (
+        set().union(*_listed().values()) | {"fact", "claim", "claim_outcome", *LINES, *OF_INPUT, *OF_PYTHON}
+        == SCHEMAS.keys()
+    )
 
 
 def test_answers_of_every_command_are_validated() -> None:

@@ -286,3 +286,24 @@ def test_the_key_of_the_kinds_is_the_same_in_every_process() -> None:
         for seed in "123"
     }
     assert len(keys) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("cup_of_tea", "cup"),
+        ("plates_of_biscuits", "plate"),
+        ("bar_of_soap", "soap"),
+        ("stack_of_plates", "plate"),
+        ("slice_of_bread", "slice of bread"),
+        ("roll_of_tape", "roll"),
+    ],
+)
+def test_names_with_of_have_the_kind_of_vessel_or_portion(name: str, label: str) -> None:
+    kind, _ = default_ontology().of_name(name)
+    assert kind is not None and kind.label == label
+
+
+@pytest.mark.parametrize("name", ["block_of_wood", "strip_of_leather", "router"])
+def test_names_of_several_kinds_or_of_materials_have_no_kind(name: str) -> None:
+    assert default_ontology().of_name(name) == (None, None)

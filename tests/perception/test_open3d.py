@@ -13,7 +13,8 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.errors import SceneError
 from deixis.perception.open3d import open3d
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import PerceivedObject, Scene
 
 CLOUD = PointCloud(
     np.array([[0, 0, 1], [np.nan, 0, 0], [0.1, 0.2, 0.3]], np.float32),

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.tbox import default_ontology
-from deixis.perception.scene import turned_axes
+from deixis.perception.oriented_box import turned_axes
 from deixis.perception.tracking.completion.missing_parts import FLAT, MIN_BEFORE, MIN_SLENDERNESS, NEAREST
 from deixis.perception.tracking.frames.image import TableView
 from deixis.perception.tracking.table.reference import Reference

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import oriented_box
-from deixis.perception.scene import turned_axes
+from deixis.perception.oriented_box import turned_axes
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.table.reference import TABLE, UNKNOWN_OWNER, Reference
 from deixis.perception.tracking.things.likeness import likeness

@@ -12,7 +12,7 @@ from deixis.perception.detection.detect import Detection
 from deixis.perception.detection.outline import Circle, oriented_box, upright_box
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.viewpoint import moved
-from deixis.perception.scene import OrientedBox, yaw_of
+from deixis.perception.oriented_box import OrientedBox, yaw_of
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.table.observation import Table
 from deixis.perception.tracking.things.rectangle import is_rectangular

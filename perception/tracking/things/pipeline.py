@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.settings import OutlineSettings
-from deixis.perception.scene import OrientedBox, turned_axes, yaw_of
+from deixis.perception.oriented_box import OrientedBox, turned_axes, yaw_of
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.situation import State, TrackedThing

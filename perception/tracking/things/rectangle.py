@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.scene import OrientedBox, turned_axes
+from deixis.perception.oriented_box import OrientedBox, turned_axes
 
 MAX_HEIGHT = 0.04
 """Largest height in metres of a flat thing."""

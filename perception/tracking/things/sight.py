@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.scene import OrientedBox, turned_axes
+from deixis.perception.oriented_box import OrientedBox, turned_axes
 from deixis.perception.tracking.frames.image import FrameImage, TableView
 from deixis.perception.tracking.things.likeness import COLOUR_SPREAD, SHADE_SPREAD
 from deixis.perception.tracking.things.particles import turned_by

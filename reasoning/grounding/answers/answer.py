@@ -19,6 +19,7 @@ from deixis.reasoning.grounding.reference.answer import Frame
 if TYPE_CHECKING:
     import networkx as nx
 
+    from deixis.reasoning.grounding.answers.claims import ClaimOutcome
     from deixis.reasoning.grounding.hypotheses.hypotheses import Side
     from deixis.reasoning.grounding.hypotheses.viewpoint import Viewpoint
     from deixis.reasoning.grounding.questions.inquiry import Exchange
@@ -136,6 +137,8 @@ class Grounding(Answer):
         Overall similarity of the two graphs by the paper's measure, in [0, 1].
     outcomes
         Outcome of each fact that can be compared, in the order in which the facts were stated.
+    claims
+        Outcomes of the claims (places, distances, arrangements and others), in the order in which they were stated.
     proved_best
         Whether the engine proved that no map is likelier.
     converged
@@ -214,6 +217,7 @@ class Grounding(Answer):
     exchanges: tuple[Exchange, ...] | None = None
     viewpoints: tuple[Viewpoint, ...] | None = None
     frames: tuple[FrameOfFact, ...] = ()
+    claims: tuple[ClaimOutcome, ...] = ()
     scene: object | None = field(default=None, compare=False)
     surface: str | None = None
     members: Mapping[str, tuple[Member, ...]] = field(default_factory=dict)

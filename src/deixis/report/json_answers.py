@@ -13,10 +13,10 @@ from deixis.ontology.graph.facts import Fact
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative, Match
-    from deixis.reasoning.comparison.claims import ClaimOutcome
     from deixis.reasoning.entailment.derivations import Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding
+    from deixis.reasoning.grounding.answers.claims import ClaimOutcome
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.knowledge.learn import Learned
     from deixis.workflows.layouts.infer import Inference
@@ -191,7 +191,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
     -------
     dict
         Data for JSON: the matches, the objects and things left out with the reasons, the interchangeable names, the
-        facts by outcome, and the facts on which the answer depends.
+        facts by outcome, the claims with what was measured, and the facts on which the answer depends.
     """
     from deixis.reasoning.grounding.answers.answer import Outcome, Standing
 
@@ -224,6 +224,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
             "waived": [outcome_to_dict(entry) for entry in found.of(Outcome.WAIVED)],
             "open": [outcome_to_dict(entry) for entry in found.of(Outcome.OPEN)],
         },
+        "claims": [claim_outcome_to_dict(entry) for entry in found.claims],
         "frames": [
             {"fact": fact_to_dict(one.fact), "frame": one.frame.value, "probability": _rounded(one.probability)}
             for one in found.frames

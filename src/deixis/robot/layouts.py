@@ -22,7 +22,8 @@ from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph, dispensable
 from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
-from deixis.perception.scene import OrientedBox, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications

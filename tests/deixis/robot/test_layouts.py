@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from deixis.learning.layouts.experience import Experience, Moments, Spread, log_sizes, long_axis, predictive
 from deixis.ontology.tbox import default_ontology
-from deixis.perception.scene import OrientedBox, PerceivedObject
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import PerceivedObject
 from deixis.robot.layouts import LearnedLayout, _pieces, angle_between
 from deixis.workflows.layouts.read import read_script
 

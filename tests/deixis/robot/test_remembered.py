@@ -13,7 +13,8 @@ from deixis.learning.layouts.experience import Experience, Moments, Tally
 from deixis.memory.episodes.fluents.changes import Add
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.robot import Robot
 from deixis.workflows.knowledge.unlearn import Selection

@@ -11,7 +11,8 @@ import numpy as np
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.experiences import finish_recording, start_recording
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.robot import Robot

@@ -15,7 +15,8 @@ import deixis.perception.formats.scene_json as module
 from deixis.errors import DeixisError
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.scene_json import read_scene, scene_text, scene_to_dict
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import PerceivedObject, Scene
 
 BOX: dict[str, Any] = {"id": "o1", "min": [0, 0], "max": [1, 1]}
 

@@ -72,12 +72,12 @@ def test_undeclared_properties_are_declared_and_imports_dropped() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (":Fork rdfs:subClassOf :Cutlery", "every fork is Cutlery"),
+        (":Fork rdfs:subClassOf :Cutlery", "every fork is a Cutlery"),
         (":Fork rdfs:subClassOf owl:Nothing", "nothing can be a fork"),
         (":Fork owl:disjointWith :Spoon", "fork and Spoon have nothing in common"),
         (":left a owl:TransitiveProperty", "'left' is transitive"),
         (":left owl:inverseOf :right", "'left' is the inverse of 'right'"),
-        (":left rdfs:domain :Thing", "whatever is 'left' of something is Thing"),
+        (":left rdfs:domain :Thing", "whatever is 'left' of something is a Thing"),
         (":x a :Fork", "x is a fork"),
         (":x a :Apple", "x is an Apple"),
         (":x :left :y", "left(x, y)"),

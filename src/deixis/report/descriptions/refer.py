@@ -23,7 +23,7 @@ def reference_lines(found: Reference) -> list[str]:
     -------
     list of str
         One line with the reason if there is no target; otherwise the target, the alternatives if it is undecided, the
-        paraphrase, the frame of directions, and the question.
+        paraphrase, the frame of directions, the question, and notes.
     """
     if found.target is None:
         return [f"No object: {'; '.join(found.notes)}."]
@@ -37,7 +37,7 @@ def reference_lines(found: Reference) -> list[str]:
         lines.append(f"Directions are taken in the frame of the {found.frame}.")
     if found.question is not None:
         lines.append(f"To ask: {found.question.text}")
-    return lines
+    return [*lines, *(f"Note: {note}." for note in found.notes)]
 
 
 def reference_to_dict(found: Reference) -> dict[str, Any]:

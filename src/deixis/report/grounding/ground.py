@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative, Match
     from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding, LeftOut, Member, Pivotal
+    from deixis.reasoning.grounding.answers.claims import ClaimOutcome
 
 MAX_LISTED = 12
 """Maximum number of names, and of pivotal facts, to list one by one."""
@@ -74,6 +75,7 @@ def grounding_lines(found: Grounding) -> list[str]:
     rest = "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
     lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + rest]
     lines += [violation(f"    violated: {violation_text(entry)}") for entry in found.violated]
+    lines += claim_lines(found.claims)
     own = [one for one in found.frames if one.frame in FRAMES]
     lines += [f"    {one.fact}: {FRAMES[one.frame]} (probability {one.probability:.2f})" for one in own[:MAX_LISTED]]
     if found.fits is not None and found.outcomes:
@@ -87,6 +89,43 @@ def grounding_lines(found: Grounding) -> list[str]:
     if len(pivotal) > MAX_LISTED:
         lines.append(f"and {len(pivotal) - MAX_LISTED} more facts that the answer depends on (--json lists all)")
     return [*lines, _standing_line(found), *(f"Note: {note}." for note in found.notes)]
+
+
+def claim_lines(claims: Sequence[ClaimOutcome]) -> list[str]:
+    """Return how many claims hold, and those that are violated or cannot be decided, with what was measured.
+
+    Parameters
+    ----------
+    claims
+        Outcomes of the claims of a description.
+
+    Returns
+    -------
+    list of str
+        Empty without claims. Violated claims are marked as violations, undecidable ones as doubt.
+    """
+    from deixis.reasoning.grounding.answers.claims import ClaimVerdict
+
+    if not claims:
+        return []
+    words = {
+        ClaimVerdict.SATISFIED: "satisfied",
+        ClaimVerdict.VIOLATED: "violated",
+        ClaimVerdict.WAIVED: "optional and not satisfied",
+        ClaimVerdict.OPEN: "about something left out",
+        ClaimVerdict.UNDECIDABLE: "undecidable",
+    }
+    listed: dict[ClaimVerdict, list[ClaimOutcome]] = {
+        verdict: [entry for entry in claims if entry.verdict is verdict] for verdict in words
+    }
+    counts = [
+        f"{len(entries)} {words[verdict]}"
+        for verdict, entries in listed.items()
+        if entries or verdict is ClaimVerdict.SATISFIED
+    ]
+    lines = [f"Claims: {len(claims)} stated, {', '.join(counts)}"]
+    lines += [violation(f"    violated: {claim_text(entry)}") for entry in listed[ClaimVerdict.VIOLATED]]
+    return lines + [doubt(f"    undecidable: {claim_text(entry)}") for entry in listed[ClaimVerdict.UNDECIDABLE]]
 
 
 def left_out_lines(left_out: Sequence[LeftOut]) -> list[str]:
@@ -327,6 +366,23 @@ def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
     if pivotal.settled:
         would.append(f"{', '.join(pivotal.settled)} would be decided")
     return f"Without {pivotal.fact}{place}: {'; '.join(would)}." if would else ""
+
+
+def claim_text(entry: ClaimOutcome) -> str:
+    """Return a claim with what was measured, and its line.
+
+    Parameters
+    ----------
+    entry
+        Outcome of a claim.
+
+    Returns
+    -------
+    str
+        The claim, the measure, and the place ``file:line:column`` of the claim.
+    """
+    place = f" ({entry.claim.source})" if entry.claim.source else ""
+    return f"{entry}{place}"
 
 
 def violation_text(entry: FactOutcome) -> str:

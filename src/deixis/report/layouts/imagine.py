@@ -10,7 +10,7 @@ from deixis.ontology.graph.export import fact_to_dict
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.things.sizes import Extent
 from deixis.perception.formats.scene_json import scene_to_dict
-from deixis.reasoning.comparison.claims import ClaimVerdict
+from deixis.reasoning.grounding.answers.claims import ClaimVerdict
 from deixis.report.json_answers import claim_outcome_to_dict
 from deixis.report.marks import doubt, violation
 from deixis.workflows.layouts.imagine import Imagination, ImaginedTable, NoTable, Sized

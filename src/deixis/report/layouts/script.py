@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.things.kinds import with_article
-from deixis.report.grounding.ground import left_out_lines, violation_text
+from deixis.report.grounding.ground import claim_text, left_out_lines, violation_text
 from deixis.report.marks import doubt, violation
 
 MAX_LISTED = 12
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from deixis.ontology.graph.claims import Claim
     from deixis.ontology.graph.facts import Fact
     from deixis.reasoning.comparison.checking import RoleCheck
-    from deixis.reasoning.comparison.claims import ClaimOutcome
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.knowledge.learn import Learned
@@ -225,7 +224,7 @@ def check_lines(checked: Check) -> list[str]:
         The verdict first; errors are marked as violations.
     """
     from deixis.reasoning.comparison.checking import RoleVerdict
-    from deixis.reasoning.comparison.claims import ClaimVerdict, violated
+    from deixis.reasoning.grounding.answers.claims import ClaimVerdict, violated
 
     table = checked.table
     right = "Nothing is known to be wrong" if table.of(RoleVerdict.UNDETERMINED) else "Nothing is wrong"
@@ -258,15 +257,15 @@ def check_lines(checked: Check) -> list[str]:
         lines.append(violation(f"miscoloured  {entry.role} ({entry.perceived}): {seen}"))
     lines += [violation(f"extra        {extra.perceived}: {extra.reason}") for extra in table.extra]
     lines += [
-        violation(f"broken       {_claim_text(entry)}")
+        violation(f"broken       {claim_text(entry)}")
         for entry in violated(table.claims)
         if entry.claim not in turned_by_claim
     ]
     lines += [violation(f"unexpected   {violation_text(entry)}") for entry in table.unexpected]
     hedged = (entry for entry in table.claims if entry.claim.weight < 1 and entry.verdict is ClaimVerdict.VIOLATED)
-    lines += [violation(f"unexpected   {_claim_text(entry)}") for entry in hedged]
+    lines += [violation(f"unexpected   {claim_text(entry)}") for entry in hedged]
     unsure = (entry for entry in table.claims if entry.verdict is ClaimVerdict.UNDECIDABLE)
-    lines += [doubt(f"unchecked    {_claim_text(entry)}") for entry in unsure]
+    lines += [doubt(f"unchecked    {claim_text(entry)}") for entry in unsure]
     lines += [
         doubt(f"undetermined {entry.role}: {entry.perceived} {_known_by(entry)}")
         for entry in table.of(RoleVerdict.UNDETERMINED)
@@ -278,11 +277,6 @@ def check_lines(checked: Check) -> list[str]:
     if undetermined:
         lines.append(UNDETERMINED_REMEDY)
     return lines + [f"Note: {note}." for note in table.grounding.notes]
-
-
-def _claim_text(entry: ClaimOutcome) -> str:
-    place = f" ({entry.claim.source})" if entry.claim.source else ""
-    return f"{entry}{place}"
 
 
 def _known_by(entry: RoleCheck) -> str:

@@ -40,6 +40,9 @@ MAX_QUESTIONS = 20
 MIN_LISTED = 1e-3
 """Minimum probability of a listed alternative."""
 
+MIN_LIKENESS = 0.5
+"""Minimum similarity of a noun and a label that counts as alike; that of *stool* and *chair*."""
+
 
 @checks_arguments
 def refer(
@@ -171,18 +174,31 @@ def _check_words(query: Query, room: Room) -> None:
     """
     from deixis.ontology.tbox import default_ontology
 
-    nouns = [part.noun for part in query.target.parts() if part.noun]
-    if query.viewer is not None:
-        nouns += [part.noun for part in query.viewer.landmark.parts() if part.noun]
+    nouns = _nouns(query)
     lexicon, similarity = default_ontology().lexicon, shipped_model().lexis.similarity
     known = any(lexicon.knows(noun) or (similarity(noun, room) > 0).any() for noun in nouns)
     if known or any(one.dimension != "other" for one in query.target.properties):
         return
     if nouns:
         raise DescriptionError(
-            f"no noun of `text` is known, got {', '.join(map(repr, dict.fromkeys(nouns)))};"
+            f"no noun of `text` is known, got {', '.join(map(repr, nouns))};"
             " describe the object in English with a common noun or a label of the scene"
         )
+
+
+def _nouns(query: Query) -> list[str]:
+    """Return the nouns of a description, each once."""
+    parts = [*query.target.parts(), *(() if query.viewer is None else query.viewer.landmark.parts())]
+    return list(dict.fromkeys(part.noun for part in parts if part.noun))
+
+
+def _label_notes(query: Query, room: Room) -> tuple[str, ...]:
+    """Return a note that names the nouns that fit no label, if every object of the scene has one."""
+    if room.unlabelled.any():
+        return ()
+    similarity = shipped_model().lexis.similarity
+    strange = [noun for noun in _nouns(query) if similarity(noun, room).max() < MIN_LIKENESS]
+    return (f"no object of the scene has a label like {' or '.join(map(repr, strange))}",) if strange else ()
 
 
 def refer_batch(
@@ -366,5 +382,6 @@ def _answer(
         frame,
         question,
         turns,
+        _label_notes(query, scene.room),
         scene=scene,
     )

@@ -24,10 +24,10 @@ from deixis.learning.lessons.scene_evidence import (
 )
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
-from deixis.reasoning.comparison.claims import violated
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError, require_time_limit
+from deixis.reasoning.grounding.answers.claims import violated
 from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS

@@ -15,8 +15,8 @@ from deixis.ontology.rdf.triples import with_blank_nodes
 from deixis.ontology.relations.relation import Relation, Relations
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.checking import TableCheck
-from deixis.reasoning.comparison.claims import ClaimVerdict
 from deixis.reasoning.geometry.pairs import pair_geometry
+from deixis.reasoning.grounding.answers.claims import ClaimVerdict
 from deixis.reasoning.grounding.evidence.evidence import HELD_FROM
 from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.graph import RelationGraph
-from deixis.reasoning.comparison.claims import ClaimOutcome, check_claims
 from deixis.reasoning.geometry.overlap import overlapping
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.grounding.answers.claims import ClaimOutcome, check_claims
 from deixis.reasoning.grounding.evidence.claims.places import CENTRAL, TOWARDS, X
 from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models

@@ -18,7 +18,6 @@ from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.things.kinds import Kind, Kinds, with_article
 from deixis.ontology.things.sizes import SizeRange
 from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
-from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict
 from deixis.reasoning.entailment.claim_facts import facts_of_claims, with_facts_of_claims
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
@@ -26,6 +25,7 @@ from deixis.reasoning.entailment.realisation.demands import is_firm
 from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
 from deixis.reasoning.errors import SettingError, require_time_limit
 from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.grounding.answers.claims import ClaimOutcome, ClaimVerdict
 from deixis.workflows.layouts.arrange import Arrangement, arrange
 from deixis.workflows.layouts.read import as_script
 

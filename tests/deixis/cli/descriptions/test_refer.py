@@ -26,6 +26,14 @@ def test_an_undecided_object_comes_with_a_question() -> None:
     assert "undecided" in out and "To ask: Is it" in out
 
 
+def test_nouns_unlike_every_label_are_noted() -> None:
+    note = "Note: no object of the scene has a label like 'awl' or 'mallet'."
+    assert note in deixis("refer", "the awl next to the mallet", STUDY)[1].splitlines()
+    assert "Note" not in deixis("refer", "the stool next to the couch", STUDY)[1]
+    hidden = deixis("refer", "the awl next to the mallet", STUDY, "--hide-labels")
+    assert "Note" not in hidden[1]
+
+
 def test_the_object_is_drawn_in_its_scene(tmp_path: Path) -> None:
     code, out, _ = deixis("refer", "the chair", STUDY, "--plot", tmp_path / "meant.svg")
     assert code == 3

@@ -22,6 +22,7 @@ PROMISED = {
     "interchangeable": list,
     "graph_similarity": float,
     "facts": dict,
+    "claims": list,
     "proved_best": bool,
     "seconds": float,
 }
@@ -49,6 +50,26 @@ def test_text_names_the_matches_and_what_is_open() -> None:
     assert "    dinner_knife, water_glass" in out.splitlines()
     assert "Facts: 11 stated, 11 satisfied" in out
     assert "Proved the best answer; engine exact" in out
+
+
+def test_text_and_json_report_claims_with_their_measures(tmp_path: Path) -> None:
+    text = "fork left of plate; fork is at the left; fork is the largest; cup has material clay\n"
+    script = write(tmp_path / "t.layout", text)
+    boxes = (("a", 0, [0.03, 0.2, 0.01]), ("b", 0.3, [0.25, 0.25, 0.02]), ("c", 0.7, [0.08, 0.08, 0.1]))
+    objects = [{"id": id, "min": [x, 0, 0], "max": [x + size[0], *size[1:]]} for id, x, size in boxes]
+    scene = write(tmp_path / "t.scene.json", json.dumps({"objects": objects}))
+    code, out, _ = deixis("ground", script, scene)
+    assert code == 0
+    assert "Claims: 3 stated, 1 satisfied, 1 violated, 1 undecidable" in out
+    assert re.search(r"^    violated: largest\(fork\): .*\(.*t\.layout:1:\d+\)$", out, re.MULTILINE)
+    claims = json.loads(deixis("ground", script, scene, "--json")[1])["claims"]
+    assert [entry["verdict"] for entry in claims] == ["satisfied", "violated", "undecidable"]
+    assert claims[1]["perceived"] == ["a"]
+    assert claims[1]["measured"]
+
+
+def test_text_without_claims_does_not_mention_them() -> None:
+    assert "Claims" not in deixis("ground", FULL, SCENE)[1]
 
 
 @pytest.mark.parametrize("engine", ["exact", "scalable", "similarity", "blondel"])

@@ -51,8 +51,8 @@ def test_an_impossible_class_is_named_with_its_reasons(table: Path, spork: Path,
     assert "no individual can belong to spork" in out.splitlines()[0]
     assert out.splitlines()[1:4] == [
         "nothing can be a spork, because",
-        "  every spork is fork",
-        "  every spork is spoon",
+        "  every spork is a fork",
+        "  every spork is a spoon",
     ]
     assert "nothing is more than one of fork" in out.splitlines()[4]
 

@@ -11,7 +11,7 @@ from deixis.grammar.script import Script
 from deixis.learning.lessons.scene_evidence import surface_thing
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict
+from deixis.reasoning.grounding.answers.claims import ClaimOutcome, ClaimVerdict
 from deixis.report.grounding.ground import grounding_lines
 from deixis.report.layouts.imagine import imagination_lines
 from deixis.session import Session

@@ -17,9 +17,9 @@ from deixis.grammar.layout.parser import parse_script, read_layout
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.comparison.claims import ClaimVerdict
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.answers.answer import Outcome
+from deixis.reasoning.grounding.answers.claims import ClaimVerdict
 from deixis.session import Session
 from deixis.workflows.grounding.ground import ground
 from deixis.workflows.layouts.imagine import ImaginedTable, imagine

@@ -3,7 +3,7 @@
 import numpy as np
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.changes.hands import MAX_STEP, Hands
 from deixis.perception.tracking.frames.image import FrameImage, Optics
 from deixis.perception.tracking.kernels import NEARER, SAME, UNKNOWN

@@ -5,7 +5,7 @@ import pytest
 from first_looks import HALF, PLATE, first_look
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.changes.ownership import things_around
 from deixis.perception.tracking.things.model import Model
 

@@ -5,7 +5,7 @@ import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.settings import OutlineSettings
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.completion.hidden_ends import hidden_lengths, likely_length
 from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view
 from deixis.perception.tracking.settings import TrackingSettings

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flat_tables import BLUE, KNIFE, OPTICS, SHADED, SHAPE, STEEL, WHITE, WOOD, Table, lay, table, thing_at, view
 
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.completion.missing_parts import FlatThing, revealed_part
 from deixis.perception.tracking.completion.pieces import fits_another
 from deixis.perception.tracking.frames.image import FrameImage

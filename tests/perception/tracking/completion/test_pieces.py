@@ -5,7 +5,7 @@ import pytest
 from flat_tables import BLUE, OPTICS, SHAPE, STEEL, lay, table, thing_at, view
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.completion.pieces import (
     floating_parts,
     stands_behind,

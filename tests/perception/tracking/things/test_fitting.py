@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.things.fitting import fits

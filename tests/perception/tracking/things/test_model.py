@@ -9,7 +9,7 @@ from first_looks import HALF, first_look
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.outline import oriented_box, upright_box
 from deixis.perception.detection.table.viewpoint import moved
-from deixis.perception.scene import OrientedBox, turned_axes
+from deixis.perception.oriented_box import OrientedBox, turned_axes
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.tracking.things.model import Model, extended, model_of, standing, without_table
 

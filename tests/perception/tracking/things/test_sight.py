@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from deixis.perception.scene import OrientedBox
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.tracking.frames.image import FrameImage, Optics, table_view
 from deixis.perception.tracking.things.sight import Sight, quaternion
 

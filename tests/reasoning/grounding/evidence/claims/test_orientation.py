@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import deixis
-from deixis.perception.scene import Heading, OrientedBox
+from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.scene import Heading
 from deixis.reasoning.grounding.answers.answer import Outcome
 from deixis.reasoning.grounding.reference.answer import Frame
 from deixis.testing import assert_grounds

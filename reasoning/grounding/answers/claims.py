@@ -9,7 +9,7 @@ across them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations, pairwise
@@ -41,7 +41,8 @@ from deixis.reasoning.grounding.evidence.claims.places import (
     lean_on_surface,
     place_degree,
 )
-from deixis.reasoning.grounding.evidence.words.meaning import BORDER, EXTREME
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.words.meaning import BORDER, EXTREME, shipped_models
 
 HOLDS_ABOVE = 0.5 + 1e-9
 """Degree above which a claim holds."""
@@ -465,6 +466,44 @@ def _undecidable(claim: Claim) -> str:
 _OF_ONE = frozenset(
     {"contents", "material", "state", "shape", "kind", "colour", "height", "length", "width", "thickness"}
 )
+
+
+def outcomes_of_claims(
+    evidence: Evidence, claims: Sequence[Claim], filled: Mapping[str, str], members: Mapping[str, Iterable[str]]
+) -> tuple[ClaimOutcome, ...]:
+    """Return the outcomes of claims in the scene of a grounding.
+
+    Parameters
+    ----------
+    evidence
+        Evidence of the grounding.
+    claims
+        Claims to check.
+    filled
+        Names of the things that the objects are matched to.
+    members
+        Names of the things of each group of unknown number.
+
+    Returns
+    -------
+    tuple of ClaimOutcome
+        An outcome for each claim, in order; of a claim about a group, those of all members that violate it if any does.
+    """
+    scene, models = evidence.scene, evidence.meaning.models or shipped_models()
+    words = evidence.description.vocabulary
+
+    def checked(some: Sequence[Claim], filled: Mapping[str, str]) -> tuple[ClaimOutcome, ...]:
+        return check_claims(
+            some, filled, scene.nodes, scene.boxes, words, models, evidence.metric, evidence.surface, scene.poses
+        )
+
+    found: list[ClaimOutcome] = []
+    for claim, outcome in zip(claims, checked(claims, filled), strict=True):
+        group = claim.subjects[0] if len(claim.subjects) == 1 else None
+        outcomes = [checked([claim], {**filled, group: thing})[0] for thing in members.get(group or "", ()) if group]
+        wrong = [entry for entry in outcomes if entry.verdict in (ClaimVerdict.VIOLATED, ClaimVerdict.WAIVED)]
+        found += wrong or [outcome]
+    return tuple(found)
 
 
 def violated(outcomes: Sequence[ClaimOutcome]) -> Iterator[ClaimOutcome]:

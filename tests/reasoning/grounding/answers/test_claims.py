@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from deixis.grammar.layout.parser import parse_script
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims
 from deixis.reasoning.geometry.poses import Poses
+from deixis.reasoning.grounding.answers.claims import ClaimOutcome, ClaimVerdict, check_claims
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 THINGS = {  # minimum and maximum in metres, on a table of 70 by 50 cm
