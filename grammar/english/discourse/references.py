@@ -439,7 +439,12 @@ class References:
                 continue
             alone = not (entity.members or entity.plural or entity.single or entity.group is not None)
             named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
-            if alone and phrase.plural and phrase.count is None and (not named or entity.noun.endswith(f" {phrase.head}")):
+            if (
+                alone
+                and phrase.plural
+                and phrase.count is None
+                and (not named or entity.noun.endswith(f" {phrase.head}"))
+            ):
                 continue  # 'the drums' after 'the bass drum'
             every = phrase.determiner in ("each", "every") or any(a.rank is not None for a in phrase.adjectives)
             if (
