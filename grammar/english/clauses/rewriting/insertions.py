@@ -140,8 +140,8 @@ def _directions_apart(chunks: list[Chunk], text: str) -> list[str]:
 def _says_place_again(before: Chunk, inside: list[Chunk]) -> bool:
     """Return True for another name of the place before, as a person sees it: *(your right as you face it)*."""
     place = before.type in ("NP", "ADV") and (before.type == "ADV" or is_place(before.value))
-    mine = inside[0].type == "NP" and is_place(inside[0].value) and inside[0].value.owner is not None
-    return place and mine and inside[0].value.owner.pronoun in VIEWER_WORDS
+    owner = inside[0].value.owner if inside[0].type == "NP" and is_place(inside[0].value) else None
+    return place and owner is not None and owner.pronoun in VIEWER_WORDS
 
 
 def _is_clause(inside: list[Chunk]) -> bool:
