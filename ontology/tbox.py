@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from deixis.errors import OntologyError
 from deixis.ontology.inflection import singulars
+from deixis.ontology.kept import kept
 from deixis.ontology.rdf.triple_index import TripleIndex
 from deixis.ontology.rdf.triples import content_key
 from deixis.ontology.rdf.vocabulary import DX, W3C
@@ -58,7 +59,7 @@ class Ontology:
         """Hash of all statements about kinds: their words, their broader kinds, their usual sizes, and the lexicon."""
         from deixis.ontology.lexicon.nouns import NOUNS_FILE
 
-        stated = [(kind.iri, kind.words, kind.broader, self.sizes.of(kind.iri)) for kind in self.kinds]
+        stated = [(kind.iri, kind.words, sorted(kind.broader), self.sizes.of(kind.iri)) for kind in self.kinds]
         return content_key(repr(stated) + NOUNS_FILE.read_text(encoding="utf-8"))
 
     def quality(self, words: str) -> tuple[Kind | None, Colour | None]:
@@ -218,8 +219,16 @@ def tbox_turtle() -> str:
 
 @lru_cache(maxsize=1)
 def default_ontology() -> Ontology:
-    """Return the shipped ontology, read once."""
-    return load_ontology()
+    """Return the shipped ontology, read once and then kept on disk."""
+    here = Path(__file__).parent
+    code = ("tbox.py", "rdf/triple_index.py", "rdf/vocabulary.py", "relations/relation.py", "relations/allen.py")
+    code += ("things/kinds.py", "things/sizes.py", "things/colours.py")
+
+    def parts() -> tuple[Relations, Kinds, dict[str, float], Sizes, Colours]:
+        read = load_ontology()
+        return read.relations, read.kinds, read.hedges, read.sizes, read.colours
+
+    return Ontology(*kept("ontology", (*TBOX_FILES, *(here / name for name in code)), parts))
 
 
 def _parse(text: str) -> Iterator[ox.Quad]:

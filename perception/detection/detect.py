@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from itertools import islice
 
 import numpy as np
@@ -11,19 +12,36 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.density import evenly_dense
-from deixis.perception.detection.left_out import Above, Fate, Pieces, holes, left_out, missing_lines, odd_sizes
-from deixis.perception.detection.outline import hull_of, occupied_cells, oriented_box, rim_of, upright_box
+from deixis.perception.detection.left_out import (
+    Above,
+    Fate,
+    Pieces,
+    far_note,
+    holes,
+    left_out,
+    missing_lines,
+    odd_sizes,
+)
+from deixis.perception.detection.outline import corners_of, hull_of, occupied_cells, oriented_box, rim_of, upright_box
+from deixis.perception.detection.quantiles import median, medians, percentiles
 from deixis.perception.detection.segmentation.boundaries import agglomerated, boundaries
 from deixis.perception.detection.segmentation.joining import whole_things
 from deixis.perception.detection.segmentation.lying import with_lying_things
-from deixis.perception.detection.segmentation.neighbours import NEIGHBOURS, has_enough, neighbour_table
 from deixis.perception.detection.segmentation.parts import Parts
 from deixis.perception.detection.segmentation.supervoxels import supervoxels
 from deixis.perception.detection.segmentation.surface import Surface, surface_of
-from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.settings import DetectionSettings, ScaleSettings
 from deixis.perception.detection.shown import Shows, is_bare_table, is_large, is_one_object, is_small
 from deixis.perception.detection.table.heights import Raised, raised
-from deixis.perception.detection.table.plane import Plane, coordinates
+from deixis.perception.detection.table.neighbours import (
+    NEIGHBOURS,
+    ListedNeighbours,
+    Neighbours,
+    has_enough,
+    neighbour_table,
+    neighbours_in_image,
+)
+from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.table_top import table_top
 from deixis.perception.detection.table.tables import FoundTable, tables
 from deixis.perception.detection.table.viewpoint import (
@@ -39,6 +57,7 @@ from deixis.perception.detection.table.viewpoint import (
 from deixis.perception.errors import CloudError
 from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.scene import DEFAULT_VIEWPOINT, PerceivedObject, Scene
+from deixis.reasoning.geometry.coordinates import coordinates, norms
 
 BACKGROUND = -1
 """Label of a point that does not belong to an object."""
@@ -151,28 +170,59 @@ def detect(
     >>> abs(found.table.normal).round(3).tolist(), found.boxes.shape, found.notes
     ([0.0, 0.0, 1.0], (0, 2, 3), ('nothing is on the table',))
     """
-    settings = settings or DetectionSettings()
+    settings = settings or _default_settings()
+    seen = _seen(cloud, settings)
+    if seen is None:
+        raise CloudError("a cloud without one finite point cannot be used; check the depth image")
+    view, notes = seen
+    found = _detected(cloud, view, settings, stage or (lambda name: None))
+    return replace(found, notes=(*found.notes, *notes))
+
+
+def _seen(cloud: PointCloud, settings: DetectionSettings, is_whole: bool = True) -> tuple[View, tuple[str, ...]] | None:
+    """Return the points of a cloud that are used, and notes on others that have a depth; None without any point.
+
+    A part of a cloud is not checked for its unit, as it may be small.
+    """
+    from deixis.perception.detection.kernels import gathered
+
     kept = finite_places(cloud)
     if not len(kept):
-        raise CloudError("a cloud without one finite point cannot be used; check the depth image")
-    points = cloud.points[kept].astype(np.float64)
+        return None
+    points, box = gathered(cloud.points, kept)
     few = points[:: max(1, len(points) // 10_000)]
-    spread = float(np.median(np.linalg.norm(few - np.median(few, axis=0), axis=1)))
-    if spread > settings.scale.max_median_radius:
+    middle, limits = medians(few), settings.scale
+    if is_whole:
+        _require_metres(few, middle, limits)
+    notes: tuple[str, ...] = ()
+    if np.abs(box - middle).max() > limits.max_radius:
+        near = np.flatnonzero((np.abs(points - middle) <= limits.max_radius).all(axis=1))
+        notes = (far_note(len(points) - len(near), limits.max_radius),)
+        points, kept = points.take(near, axis=0), kept[near]
+    view = View(points, kept, cloud.organised, camera_pose_of(cloud, settings))
+    return evenly_dense(view, settings), notes
+
+
+def _require_metres(points: NDArray[np.float64], middle: NDArray[np.float64], limits: ScaleSettings) -> None:
+    """Raise CloudError for points (n, 3) around a ``middle`` (3,) whose unit cannot be metres."""
+    spread = median(norms(points - middle))
+    if spread > limits.max_median_radius:
         raise CloudError(
             f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
             " coordinates must be metres: divide millimetres by 1000, or set the depth_scale of a depth image"
         )
-    if len(few) > 100 and spread < settings.scale.min_median_radius:
+    if len(points) > 100 and spread < limits.min_median_radius:
         raise CloudError(
             f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
             " coordinates must be metres: check the unit, or the depth_scale of the intrinsics"
         )
-    view = evenly_dense(View(points, kept, cloud.organised, camera_pose_of(cloud, settings)), settings)
+
+
+def _detected(cloud: PointCloud, view: View, settings: DetectionSettings, begin: Callable[[str], None]) -> Detection:
+    """Return the objects on a table in a view of a cloud, or what else it shows."""
     points = view.points
     if len(points) >= settings.least_points and is_small(points, settings):
         return _alone(cloud, view, settings)
-    begin = stage or (lambda name: None)
     begin(FINDING_TABLE)
     seen = list(islice(tables(view, settings), settings.table + 1))
     if len(seen) < settings.table and settings.table > 1:
@@ -190,6 +240,11 @@ def detect(
     if len(seen) > settings.table:
         return replace(found, shows=Shows.TABLES, notes=(*found.notes, _more(settings.table)))
     return found if settings.table == 1 else replace(found, shows=Shows.TABLES)
+
+
+@cache
+def _default_settings() -> DetectionSettings:
+    return DetectionSettings()
 
 
 def detect_above(cloud: PointCloud, plane: Plane, settings: DetectionSettings | None = None) -> Detection | None:
@@ -210,13 +265,13 @@ def detect_above(cloud: PointCloud, plane: Plane, settings: DetectionSettings | 
         Objects above the plane, with the frame of the part of the table that is in view; None if no point of the cloud
         is finite, or the plane does not show a table.
     """
-    settings = settings or DetectionSettings()
-    kept = finite_places(cloud)
-    if not len(kept):
+    settings = settings or _default_settings()
+    seen = _seen(cloud, settings, is_whole=False)
+    if seen is None:
         return None
-    view = View(cloud.points[kept].astype(np.float64), kept, cloud.organised, camera_pose_of(cloud, settings))
-    view = evenly_dense(view, settings)
-    return _on_table(cloud, FoundTable(plane, table_top(view, plane, settings), view), settings)
+    view, notes = seen
+    found = _on_table(cloud, FoundTable(plane, table_top(view, plane, settings), view), settings)
+    return found and replace(found, notes=(*found.notes, *notes))
 
 
 def _has_objects(found: Detection | None, seen: list[FoundTable], settings: DetectionSettings) -> bool:
@@ -283,7 +338,7 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     missed = (*left_out(table.top, above, pieces, settings), *seen_so)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     if not found.max(initial=BACKGROUND) >= 0:
-        if not large and max(_sides(view)) < settings.scale.min_bare_table_length:
+        if not large and max(view.sides) < settings.scale.min_bare_table_length:
             return None
         wall = _wall_note(view, settings)
         why = ("nothing is on the table", *(large or _small_note(view, settings)), *wall, *missed)
@@ -291,15 +346,18 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
         return Detection(cloud, table.plane, view.frame, labels, np.zeros((0, 2, 3)), (), why, shows)
     there = np.flatnonzero(found >= 0)
     there = there[np.argsort(found[there], kind="stable")]
-    members = np.split(view.points[there], np.cumsum(np.bincount(found[there]))[:-1])
+    members = np.split(view.points.take(there, axis=0), np.cumsum(np.bincount(found[there]))[:-1])
     bare = view.top[found[view.top] == BACKGROUND]
-    table_seen = occupied_cells(view.points[bare, :2], settings.outlines.bare_cell)
-    rims = [rim_of(thing[:, :2], table_seen, settings.outlines) for thing in members]
+    table_seen = occupied_cells(view.points.take(bare, axis=0)[:, :2], settings.outlines.bare_cell)
+    hulls = [corners_of(thing[:, :2]) for thing in members]
+    rims = [
+        rim_of(thing[:, :2], hull, table_seen, settings.outlines) for thing, hull in zip(members, hulls, strict=True)
+    ]
     boxes = np.stack([upright_box(thing, settings.outlines, rim) for thing, rim in zip(members, rims, strict=True)])
     low = boxes[:, 0, :2]
     order = np.lexsort((low[:, 1], low[:, 0].round(2)))
     labels[table.view.places] = np.append(np.argsort(order), BACKGROUND)[found]
-    oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
+    oriented = tuple(oriented_box(members[k], settings.outlines, rims[k], hulls[k]) for k in order)
     sizes = odd_sizes((boxes[:, 1] - boxes[:, 0]).max(axis=1), settings.notes)
     little = _sparse_note(view, found, settings)
     notes = (*(large or little or _small_note(view, settings)), *sizes, *missed)
@@ -308,11 +366,11 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes, shows)
 
 
-def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTable, NDArray[np.int32]]:
-    """Return the table with a plausible viewpoint, and the neighbours of all points around it, shape (n, 8)."""
+def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTable, Neighbours]:
+    """Return the table with a plausible viewpoint, and the neighbours of all points around it."""
     view = table.view
     if view.organised is not None:
-        return table, neighbour_table(view.points, view.places, view.organised, settings.surface)
+        return table, neighbours_in_image(view, settings.surface)
     around = np.flatnonzero(table.top.outside <= settings.top.margin)
     points, places = view.points[around], view.places[around]
     near = neighbour_table(points, places, None, settings.surface, view.pose.eye if view.pose.known else None)
@@ -322,7 +380,7 @@ def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTa
         near = neighbour_table(points, places, None, settings.surface)
     neighbours = np.full((len(view.points), NEIGHBOURS), -1, np.int32)
     neighbours[around] = np.where(near < 0, -1, around[near])
-    return table, neighbours
+    return table, ListedNeighbours(neighbours)
 
 
 def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detection:
@@ -362,10 +420,17 @@ class _TableView:
     eye: NDArray[np.float64]  # (3,)
     top: NDArray[np.intp]  # (m,) points of the connected part that is the table
 
+    @cached_property
+    def sides(self) -> tuple[float, float]:
+        """Width and depth of the table as the viewer sees it, in metres."""
+        few = self.top[:: max(1, len(self.top) // 10_000)]
+        across, deep = np.ptp(self.points.take(few, axis=0), axis=0)[:2].tolist() if len(few) else (0.0, 0.0)
+        return across, deep
+
 
 def _small_note(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
     """Return a note if the table is implausibly small."""
-    across, deep = _sides(view)
+    across, deep = view.sides
     if max(across, deep) >= settings.scale.min_table_length:
         return ()
     size = f"{100 * across:.0f} by {100 * deep:.0f} cm"
@@ -378,17 +443,10 @@ def _large_note(view: _TableView, settings: DetectionSettings) -> tuple[str, ...
     level = level[:: max(1, len(level) // 10_000)]
     if not len(level):
         return ()
-    across, deep = np.subtract(*np.percentile(view.points[level, :2], (95, 5), axis=0)).tolist()
+    across, deep = np.subtract(*percentiles(view.points.take(level, axis=0)[:, :2], (95, 5))).tolist()
     if max(across, deep) <= settings.scale.max_table_length:
         return ()
     return (f"the detected table is {across:.0f} by {deep:.0f} m; coordinates must be metres: check the unit",)
-
-
-def _sides(view: _TableView) -> tuple[float, float]:
-    """Return the width and depth of the table as the viewer sees it, in metres."""
-    few = view.top[:: max(1, len(view.top) // 10_000)]
-    across, deep = np.ptp(view.points[few, :2], axis=0).tolist() if len(few) else (0.0, 0.0)
-    return across, deep
 
 
 def _wall_note(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
@@ -414,7 +472,7 @@ def _sparse_note(view: _TableView, found: NDArray[np.int32], settings: Detection
 def _is_floor(view: _TableView, settings: DetectionSettings) -> bool:
     """Return True if the detected table is as far below the sensor and as long as a floor."""
     limits = settings.scale
-    return bool(view.eye[2] > limits.min_floor_drop and max(_sides(view)) > limits.min_floor_length)
+    return bool(view.eye[2] > limits.min_floor_drop and max(view.sides) > limits.min_floor_length)
 
 
 def _pieces(
@@ -422,7 +480,7 @@ def _pieces(
     table: FoundTable,
     rising: Raised,
     least: NDArray[np.float64],
-    neighbours: NDArray[np.int32],
+    neighbours: Neighbours,
     colours: NDArray[np.uint8] | None,
     settings: DetectionSettings,
 ) -> Pieces:
@@ -430,20 +488,18 @@ def _pieces(
 
     ``least`` (n,) are the least heights of objects, and ``colours`` those of the whole cloud.
     """
-    from deixis.perception.detection.kernels import corners_of_box, renumbered
+    from deixis.perception.detection.kernels import corners_of_box
 
     of = np.full(len(view.points), BACKGROUND, np.int32)
     chosen = np.flatnonzero(rising.above)
     if not len(chosen):
         return Pieces(of, np.zeros(0, np.int8))
-    number = np.full(len(view.points), BACKGROUND, np.int32)
-    number[chosen] = np.arange(len(chosen))
     sigma = rising.noise * view.distance[chosen] ** 2
-    painted = None if colours is None else colours[table.view.places[chosen]]
-    near = renumbered(neighbours, chosen, number)
-    organised = table.view.organised
-    pixels = None if organised is None else np.divmod(table.view.places[chosen], organised[1])
-    surface = surface_of(view.points[chosen], painted, near, sigma, view.eye, settings.surface, pixels)
+    painted = None if colours is None else colours.take(table.view.places[chosen], axis=0)
+    near = neighbours.among(chosen)
+    image = None if table.view.organised is None else table.view.pixels
+    pixels = None if image is None else (image[0][chosen], image[1][chosen])
+    surface = surface_of(view.points.take(chosen, axis=0), painted, near, sigma, view.eye, settings.surface, pixels)
     found = segments(surface, settings)
     counts = np.bincount(found)
     within = np.bincount(found, table.top.is_below[chosen]) / counts
@@ -451,7 +507,7 @@ def _pieces(
     fates[(counts >= settings.least_points) & (within < settings.heights.min_share_above_table)] = Fate.BESIDE
     members = np.split(np.argsort(found, kind="stable"), np.cumsum(counts)[:-1])
     for piece in np.flatnonzero((counts >= settings.least_points) & (fates == Fate.DISCARDED)).tolist():
-        points = surface.points[members[piece]]
+        points = surface.points.take(members[piece], axis=0)
         rise = np.quantile(points[:, 2] / least[chosen[members[piece]]], settings.heights.object_quantile)
         if rise > 1.0 and np.ptp(corners_of_box(points), axis=0).max() >= settings.least_length:
             fates[piece] = Fate.REPORTED

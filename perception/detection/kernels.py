@@ -18,6 +18,9 @@ _BUCKETS = 1024
 _BUCKET_COST = 1 / 16
 """Range of the costs in a bucket, below that of most steps."""
 
+_STRIP_ROWS = 48
+"""Number of rows of an image that are averaged at once."""
+
 _STRIP = 32
 """Number of pixels of a row whose neighbourhoods are summed at once."""
 
@@ -78,6 +81,19 @@ def refine(points, tolerance, normal, offset, shares):  # type: ignore[no-untype
 
 
 @njit(cache=True, nogil=True)
+def gathered(points, places):  # type: ignore[no-untyped-def]
+    """Return the points (n, 3) at some places (m,) in double precision, shape (m, 3), and the corners of their box."""
+    result, box = np.empty((len(places), 3)), np.empty((2, 3))
+    box[0], box[1] = np.inf, -np.inf
+    for i in range(len(places)):
+        for axis in range(3):
+            value = float(points[places[i], axis])
+            result[i, axis] = value
+            box[0, axis], box[1, axis] = min(box[0, axis], value), max(box[1, axis], value)
+    return result, box
+
+
+@njit(cache=True, nogil=True)
 def in_frame(points, frame, eye):  # type: ignore[no-untyped-def]
     """Return points (n, 3) moved by a transform (4, 4), their heights (n,), and distances (n,) from ``eye`` (3,).
 
@@ -95,6 +111,17 @@ def in_frame(points, frame, eye):  # type: ignore[no-untyped-def]
     return result, heights, distance
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def depths_below(heights, growth, band):  # type: ignore[no-untyped-def]
+    """Return the depths below 0 and above ``-band`` of heights (n,) divided by the ``growth`` of the noise (n,)."""
+    result, count = np.empty(len(heights)), 0
+    for i in range(len(heights)):
+        scaled = heights[i] / growth[i]
+        result[count] = -scaled
+        count += scaled < 0 and scaled > -band
+    return result[:count]
+
+
 @njit(cache=True, nogil=True)
 def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
     """Return values (n,) averaged repeatedly with those of neighbours that differ by at most ``apart`` (n,)."""
@@ -110,6 +137,53 @@ def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
             after[i] = total / count
         before, after = after, before
     return before
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def averaged_pixels(values, row, column, shape, apart, rounds):  # type: ignore[no-untyped-def]
+    """Return values (n,) of pixels averaged repeatedly with those of adjacent pixels, as ``averaged`` does.
+
+    ``row`` and ``column`` (n,) are the pixels of an image of ``shape`` rows and columns, in the order of the rows.
+
+    Notes
+    -----
+    Strips of the image are averaged one after the other, each with the rows around it, so that they stay in a cache.
+    Pixels without a value are infinite and so differ from all others.
+    """
+    height, width = _STRIP_ROWS + 2 * rounds + 2, shape[1] + 2
+    images = np.empty((3, height, width))
+    before, after, limit = images[0], images[1], images[2]
+    result, start, n = np.empty(len(values)), 0, len(values)
+    for top in range(0, shape[0], _STRIP_ROWS):
+        while start < n and row[start] < top - rounds:
+            start += 1
+        images[:] = np.inf
+        end = start
+        while end < n and row[end] < top + _STRIP_ROWS + rounds:
+            r, c = row[end] - top + rounds + 1, column[end] + 1
+            before[r, c], limit[r, c] = values[end], apart[end]
+            end += 1
+        for _ in range(rounds):
+            for r in range(1, height - 1):
+                above, own, below = before[r - 1], before[r], before[r + 1]
+                most, mean = limit[r], after[r]
+                for c in range(shape[1]):
+                    middle, total, count = own[c + 1], own[c + 1], 1.0
+                    for k in range(3):
+                        near = abs(above[c + k] - middle) <= most[c + 1]
+                        total, count = total + (above[c + k] if near else 0.0), count + (1.0 if near else 0.0)
+                    for k in range(0, 3, 2):
+                        near = abs(own[c + k] - middle) <= most[c + 1]
+                        total, count = total + (own[c + k] if near else 0.0), count + (1.0 if near else 0.0)
+                    for k in range(3):
+                        near = abs(below[c + k] - middle) <= most[c + 1]
+                        total, count = total + (below[c + k] if near else 0.0), count + (1.0 if near else 0.0)
+                    mean[c + 1] = total / count
+            before, after = after, before
+        for i in range(start, end):
+            if top <= row[i] < top + _STRIP_ROWS:
+                result[i] = before[row[i] - top + rounds + 1, column[i] + 1]
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -130,6 +204,36 @@ def grown(seeds, allowed, neighbours):  # type: ignore[no-untyped-def]
                 stack[count] = j
                 count += 1
     return reached
+
+
+@njit(cache=True, nogil=True)
+def grown_pixels(seeds, allowed, row, column, shape):  # type: ignore[no-untyped-def]
+    """Return a mask as ``grown`` does, of points (n,) whose neighbours are the adjacent pixels.
+
+    ``row`` and ``column`` (n,) are the pixels of an image of ``shape`` rows and columns.
+    """
+    n, width = len(seeds), shape[1] + 2
+    waiting = np.zeros((shape[0] + 2) * width, np.bool_)  # allowed and not yet reached, with a border
+    reached = np.zeros(len(waiting), np.bool_)
+    stack, count = np.empty(n, np.int32), 0
+    for i in range(n):
+        at = (row[i] + 1) * width + column[i] + 1
+        if seeds[i]:
+            reached[at], stack[count], count = True, at, count + 1
+        else:
+            waiting[at] = allowed[i]
+    while count:
+        count -= 1
+        at = stack[count]
+        for start in (at - width - 1, at - 1, at + width - 1):
+            for other in range(start, start + 3):
+                if waiting[other]:
+                    waiting[other], reached[other], stack[count] = False, True, other
+                    count += 1
+    result = np.empty(n, np.bool_)
+    for i in range(n):
+        result[i] = reached[(row[i] + 1) * width + column[i] + 1]
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -266,53 +370,60 @@ def planes_in_image(points, row, column, radius, reach, eye, steps):  # type: ig
 
     Notes
     -----
-    The sums over the neighbourhoods of a strip of a row are made at once, pixel by pixel of the neighbourhood, so that
-    the processor adds several at a time. Points on the surface within the radius are nearly always those that paths
-    from neighbour to neighbour reach.
+    The sums over the neighbourhoods of a strip of a row are made at once, two pixels of the neighbourhood after the
+    other, so that the processor adds several at a time and keeps them for two additions. Points on the surface within
+    the radius are nearly always those that paths from neighbour to neighbour reach.
     """
     n = len(points)
     around = np.abs(steps).max()
     low = (row.min() - around, column.min() - around)
     shape = (row.max() - low[0] + around + 1, column.max() - low[1] + around + _STRIP)
-    image = np.full((3, shape[0], shape[1]), 1e9)  # of pixels without a point, which are out of reach
+    image = np.full((3, shape[0] + 1, shape[1]), 1e9)  # of pixels without a point, which are out of reach
     for i in range(n):
         for axis in range(3):
             image[axis, row[i] - low[0], column[i] - low[1]] = points[i, axis]
     middles, moments = np.empty((n, 3)), np.empty((6, n))
-    sums, squares = np.empty((10, _STRIP)), np.empty(_STRIP)
-    count, sx, sy, sz = sums[0], sums[1], sums[2], sums[3]
-    sxx, sxy, sxz, syy, syz, szz = sums[4], sums[5], sums[6], sums[7], sums[8], sums[9]
+    totals, squares = np.empty((10, _STRIP)), np.empty(_STRIP)
+    count, sx, sy, sz = totals[0], totals[1], totals[2], totals[3]
+    sxx, sxy, sxz, syy, syz, szz = totals[4], totals[5], totals[6], totals[7], totals[8], totals[9]
     start = 0
     while start < n:
         end, first, farthest = start, column[start], 0.0
-        squares[:], sums[:] = -1.0, 0.0
+        squares[:], totals[:] = -1.0, 0.0
         while end < n and row[end] == row[start] and column[end] < first + _STRIP:
             squares[column[end] - first] = radius[end] * radius[end]
             farthest = max(farthest, reach[end])
             end += 1
         width, r, c = column[end - 1] - first + 1, row[start] - low[0], first - low[1]
         x, y, z = image[0, r, c : c + _STRIP], image[1, r, c : c + _STRIP], image[2, r, c : c + _STRIP]
-        for step in range(len(steps)):
-            down, right = steps[step, 0], steps[step, 1]
-            if down * down + right * right > farthest * farthest:
-                break
-            u = image[0, r + down, c + right : c + right + _STRIP]
-            v = image[1, r + down, c + right : c + right + _STRIP]
-            w = image[2, r + down, c + right : c + right + _STRIP]
+        inside = 0
+        while inside < len(steps) and steps[inside, 0] ** 2 + steps[inside, 1] ** 2 <= farthest * farthest:
+            inside += 1
+        for step in range(0, inside, 2):
+            down, right = r + steps[step, 0], c + steps[step, 1]
+            u, v, w = image[0, down], image[1, down], image[2, down]
+            u, v, w = u[right : right + _STRIP], v[right : right + _STRIP], w[right : right + _STRIP]
+            down, right = shape[0], 0  # of an odd number of pixels, the last one is without a point
+            if step + 1 < inside:
+                down, right = r + steps[step + 1, 0], c + steps[step + 1, 1]
+            p, q, s = image[0, down], image[1, down], image[2, down]
+            p, q, s = p[right : right + _STRIP], q[right : right + _STRIP], s[right : right + _STRIP]
             for k in range(width):
+                limit = squares[k]
                 dx, dy, dz = u[k] - x[k], v[k] - y[k], w[k] - z[k]
-                near = dx * dx + dy * dy + dz * dz <= squares[k]
-                dx, dy, dz = dx if near else 0.0, dy if near else 0.0, dz if near else 0.0
-                count[k] += 1.0 if near else 0.0
-                sx[k] += dx
-                sy[k] += dy
-                sz[k] += dz
-                sxx[k] += dx * dx
-                sxy[k] += dx * dy
-                sxz[k] += dx * dz
-                syy[k] += dy * dy
-                syz[k] += dy * dz
-                szz[k] += dz * dz
+                near = dx * dx + dy * dy + dz * dz <= limit
+                dx, dy, dz, one = dx if near else 0.0, dy if near else 0.0, dz if near else 0.0, 1.0 if near else 0.0
+                ex, ey, ez = p[k] - x[k], q[k] - y[k], s[k] - z[k]
+                near = ex * ex + ey * ey + ez * ez <= limit
+                ex, ey, ez, two = ex if near else 0.0, ey if near else 0.0, ez if near else 0.0, 1.0 if near else 0.0
+                count[k] = count[k] + one + two
+                sx[k], sy[k], sz[k] = sx[k] + dx + ex, sy[k] + dy + ey, sz[k] + dz + ez
+                sxx[k] = sxx[k] + dx * dx + ex * ex
+                sxy[k] = sxy[k] + dx * dy + ex * ey
+                sxz[k] = sxz[k] + dx * dz + ex * ez
+                syy[k] = syy[k] + dy * dy + ey * ey
+                syz[k] = syz[k] + dy * dz + ey * ez
+                szz[k] = szz[k] + dz * dz + ez * ez
         for i in range(start, end):
             k = column[i] - first
             mx, my, mz = sx[k] / count[k], sy[k] / count[k], sz[k] / count[k]
@@ -404,6 +515,48 @@ def least_axes(moments):  # type: ignore[no-untyped-def]
         size = np.sqrt(length)
         result[i, 0], result[i, 1], result[i, 2] = x / size, y / size, z / size
     return result
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def measures_of_parts(part, chosen, sizes, weights, middles, normals, tints, areas):  # type: ignore[no-untyped-def]
+    """Measure the parts of the ``chosen`` (k,) of s patches, which are given by ``part`` (k,), from 0 to p - 1.
+
+    Returns
+    -------
+    Lower and upper corner, centre and mean colour of each part, shape (p, 3) each, and an array (4, p): the sums of
+    the sizes and of the areas, the standard deviation of the colours, and the bulge.
+    """
+    count = part.max() + 1 if len(part) else 0
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    centres, colours = np.zeros((count, 3)), np.zeros((count, 3))
+    totals, total_weights, out = np.zeros((4, count)), np.zeros(count), np.zeros(count)
+    for k in range(len(part)):
+        p, i = part[k], chosen[k]
+        totals[0, p] += sizes[i]
+        totals[1, p] += areas[i]
+        total_weights[p] += weights[i]
+        for axis in range(3):
+            low[p, axis], high[p, axis] = min(low[p, axis], middles[i, axis]), max(high[p, axis], middles[i, axis])
+            centres[p, axis] += middles[i, axis] * sizes[i]
+            colours[p, axis] += tints[i, axis] * weights[i]
+    for p in range(count):
+        for axis in range(3):
+            centres[p, axis] /= totals[0, p]
+            colours[p, axis] /= total_weights[p]
+    for k in range(len(part)):
+        p, i = part[k], chosen[k]
+        varied, along, away = 0.0, 0.0, 0.0
+        for axis in range(3):
+            varied += (tints[i, axis] - colours[p, axis]) ** 2
+            along += (middles[i, axis] - centres[p, axis]) * normals[i, axis]
+            away += (middles[i, axis] - centres[p, axis]) ** 2
+        totals[2, p] += varied * weights[i]
+        totals[3, p] += along * sizes[i]
+        out[p] += np.sqrt(away) * sizes[i]
+    for p in range(count):
+        totals[2, p] = np.sqrt(totals[2, p] / total_weights[p])
+        totals[3, p] /= max(out[p], 1e-9)
+    return low, high, centres, colours, totals
 
 
 @njit(cache=True, nogil=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,7 @@ class Pieces:
         """Number of points of each piece, shape (p,)."""
         return np.bincount(self.of[self.of >= 0], minlength=len(self.fates))
 
-    @property
+    @cached_property
     def things(self) -> NDArray[np.int32]:
         """Index of the object of each point, shape (n,); -1 for none."""
         reported = self.fates == Fate.REPORTED
@@ -60,27 +61,28 @@ class Above:
     least: NDArray[np.float64]
     counts: NDArray[np.int64]
 
-    def groups(self, chosen: NDArray[np.bool_], settings: DetectionSettings) -> NDArray[np.intp]:
-        """Return the connected group of each point, if the group is as large and as high as objects are.
+    def groups(self, chosen: NDArray[np.intp], settings: DetectionSettings) -> NDArray[np.intp]:
+        """Return the connected group of each chosen point, if the group is as large and as high as objects are.
 
         Parameters
         ----------
         chosen
-            Mask of the points that are grouped, shape (n,).
+            Indices of the points that are grouped, shape (k,).
         settings
             Least number of points of an object, its least height, and the side of the cells that connect points.
 
         Returns
         -------
         ndarray
-            Numbers of groups, from 0, of shape (n,); -1 for other points.
+            Numbers of groups, from 0, of shape (k,); -1 for points of other groups.
         """
-        result = np.full(len(self.points), -1)
-        places = np.flatnonzero(chosen)
-        of = connected(self.points[places], settings.notes.group_cell)
-        high = np.bincount(of, self.points[places, 2] > self.least[places]) / np.bincount(of)
-        enough = np.bincount(of, self.counts[places]) >= settings.least_points
-        result[places] = np.where(enough & (high > 1 - settings.heights.object_quantile), np.arange(len(high)), -1)[of]
+        points = self.points.take(chosen, axis=0)
+        of = connected(points, settings.notes.group_cell)
+        high = np.bincount(of, points[:, 2] > self.least[chosen]) / np.bincount(of)
+        enough = np.bincount(of, self.counts[chosen]) >= settings.least_points
+        result: NDArray[np.intp] = np.where(
+            enough & (high > 1 - settings.heights.object_quantile), np.arange(len(high)), -1
+        )[of]
         return result
 
 
@@ -105,27 +107,27 @@ def left_out(top: TableTop, above: Above, pieces: Pieces, settings: DetectionSet
     tuple of str
         One sentence for each kind of omission.
     """
-    anything = above.raised.above | above.raised.too_high
-    missed = anything & (pieces.things < 0)
-    aside = missed & ((top.outside > settings.top.slack) | np.append(pieces.fates == Fate.BESIDE, False)[pieces.of])
-    high = missed & ~aside & above.raised.too_high
-    small = missed & ~aside & ~high
-    groups = above.groups(missed, settings)
+    missed = np.flatnonzero((above.raised.above | above.raised.too_high) & (pieces.things < 0))
+    beside = np.append(pieces.fates == Fate.BESIDE, False)[pieces.of[missed]]
+    aside = (top.outside[missed] > settings.top.slack) | beside
+    high = ~aside & above.raised.too_high[missed]
+    small = ~aside & ~high
+    groups, counts = above.groups(missed, settings), above.counts[missed]
     share = np.stack([np.bincount(groups[groups >= 0], which[groups >= 0]) for which in (aside, high, small)])
     kind = np.append(share.argmax(axis=0), -1)[groups]  # of the most points of each group
     group_aside, group_high, group_small = (kind == number for number in range(3))
     notes = []
     if group_high.any():
         notes.append(
-            f"{above.counts[group_high].sum()} points are more than {100 * settings.reach:.0f} cm above the table,"
+            f"{counts[group_high].sum()} points are more than {100 * settings.reach:.0f} cm above the table,"
             " higher than objects are searched: a person, a lamp or a wall"
         )
     if group_aside.any():
         number = len(np.unique(groups[group_aside]))
         some, were = ("a piece", "was") if number == 1 else (f"{number} pieces", "were")
-        notes.append(f"{some} beside the table, of {above.counts[group_aside].sum()} points, {were} left out")
-    small = group_small | (small & (kind < 0))
-    discarded, total = (int(above.counts[which].sum()) for which in (small, small | (pieces.things >= 0)))
+        notes.append(f"{some} beside the table, of {counts[group_aside].sum()} points, {were} left out")
+    discarded = int(counts[group_small | (small & (kind < 0))].sum())
+    total = discarded + int(above.counts[pieces.things >= 0].sum())
     many = discarded >= settings.least_points and discarded > settings.notes.min_discarded_share * total
     if many or group_small.any():
         notes.append(
@@ -147,6 +149,25 @@ def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSet
     return bool((both & (outside >= settings.min_overhang_points)).any())
 
 
+def far_note(count: int, radius: float) -> str:
+    """Return a note on points that are too far from the others to be measured.
+
+    Parameters
+    ----------
+    count
+        Number of these points.
+    radius
+        Distance in metres from the middle of the cloud beyond which points are left out.
+
+    Returns
+    -------
+    str
+        One sentence.
+    """
+    some, were = ("one point", "was") if count == 1 else (f"{count} points", "were")
+    return f"{some} more than {radius:.0f} m from the middle of the cloud {were} left out; check their depth"
+
+
 def missing_lines(view: View) -> tuple[str, ...]:
     """Return a note if many rows or columns of an image have no depth between others that have it.
 
@@ -162,10 +183,10 @@ def missing_lines(view: View) -> tuple[str, ...]:
     """
     if view.organised is None or not len(view.places):
         return ()
-    notes = []
-    for name, lines in zip(("rows", "columns"), view.pixels, strict=True):
-        seen = np.bincount(lines) > 0
-        seen = seen[seen.argmax() :]
+    notes, image = [], np.zeros(view.organised, np.bool_)
+    image.reshape(-1)[view.places] = True
+    for name, seen in (("rows", image.any(axis=1)), ("columns", image.any(axis=0))):
+        seen = np.trim_zeros(seen)
         if (~seen).sum() > 0.1 * len(seen):
             notes.append(f"{(~seen).sum()} of {len(seen)} {name} of the image have no depth")
     return tuple(notes)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.oriented_box import OrientedBox, turned_axes
+from deixis.reasoning.geometry.coordinates import coordinates
 
 SECTORS = 36
 """Number of sectors into which a circle is divided."""
@@ -34,15 +35,17 @@ def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.
     """
     from scipy.ndimage import label
 
+    from deixis.perception.detection.kernels import corners_of_box
+
     if not len(plan):
         return np.zeros(0, dtype=np.bool_)
-    cell = np.floor((plan - plan.min(axis=0)) / max(cell_size, float(np.ptp(plan, axis=0).max()) / 1000)).astype(
-        np.int64
-    )
-    grid = np.zeros(cell.max(axis=0) + 1, dtype=np.bool_)
-    grid[cell[:, 0], cell[:, 1]] = True
-    pieces, _ = label(grid, np.ones((3, 3)))
-    of = pieces[cell[:, 0], cell[:, 1]]
+    low, high = corners_of_box(plan)
+    cells = np.floor((plan - low) / max(cell_size, float((high - low).max()) / 1000)).astype(np.int64)
+    rows, columns = corners_of_box(cells)[1].astype(np.int64) + 1
+    cell = cells[:, 0] * columns + cells[:, 1]
+    grid = np.zeros((rows, columns), dtype=np.bool_)
+    grid.reshape(-1)[cell] = True
+    of = label(grid, np.ones((3, 3)))[0].reshape(-1)[cell]
     largest: NDArray[np.bool_] = of == np.bincount(of).argmax()
     return largest
 
@@ -252,26 +255,25 @@ class Circle:
         return Circle(axes @ self.centre, self.radius)
 
 
-def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
-    """Return the circle through the corners of the convex hull of places, or None.
+def circle_around(corners: NDArray[np.float64] | None, edge: float) -> Circle | None:
+    """Return the circle through the corners of a convex hull, or None.
 
     Parameters
     ----------
-    plan
-        Places in plan, shape (n, 2), in metres.
+    corners
+        Corners in plan, shape (k, 2), in metres, as :func:`corners_of` returns them.
     edge
         Largest distance of a corner from the circle, relative to its radius.
 
     Returns
     -------
     Circle or None
-        None if the hull has fewer than five corners, or one of them is too far from the circle.
+        None if there are fewer than five corners, or one of them is too far from the circle.
 
     Notes
     -----
     The circle is fitted by algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976).
     """
-    corners = corners_of(plan)
     if corners is None or len(corners) < 5:
         return None
     terms = np.column_stack([2 * corners, np.ones(len(corners))])
@@ -280,13 +282,20 @@ def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
     return circle if np.abs(circle.off(corners)).max() <= edge else None
 
 
-def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: OutlineSettings) -> Circle | None:
+def rim_of(
+    plan: NDArray[np.float64],
+    corners: NDArray[np.float64] | None,
+    table: NDArray[np.float64],
+    settings: OutlineSettings,
+) -> Circle | None:
     """Return the whole rim of a partly hidden round object, or None.
 
     Parameters
     ----------
     plan
         Visible places of the object in plan, shape (n, 2), in metres.
+    corners
+        Corners of their convex hull, as :func:`corners_of` returns them.
     table
         Places at which the table is visible, shape (m, 2), in metres.
     settings
@@ -298,7 +307,7 @@ def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: Outl
         None if the visible part is not round, too little of the edge is visible, or the table is visible inside the
         supposed rim.
     """
-    circle = circle_around(plan, settings.rim_tolerance)
+    circle = circle_around(corners, settings.rim_tolerance)
     if circle is None or not settings.min_rim_radius <= circle.radius <= settings.max_rim_radius:
         return None
     seen = circle.sectors(plan, settings.rim_tolerance)
@@ -346,7 +355,12 @@ def upright_box(
     return box
 
 
-def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None) -> OrientedBox:
+def oriented_box(
+    points: NDArray[np.float64],
+    settings: OutlineSettings,
+    rim: Circle | None = None,
+    corners: NDArray[np.float64] | None = None,
+) -> OrientedBox:
     """Return the upright box of points with the smallest base.
 
     Parameters
@@ -357,6 +371,8 @@ def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Ci
         Share of outermost points that are noise.
     rim
         Circle in plan that the box includes.
+    corners
+        Corners of the convex hull of the points in plan, if they are known.
 
     Returns
     -------
@@ -367,7 +383,8 @@ def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Ci
     -----
     The smallest rectangle has a side along the convex hull by the theorem of Freeman and Shapira (1975).
     """
-    box = _box_along(_best_angle(points[:, :2]), points, settings, rim)
+    corners = corners_of(points[:, :2]) if corners is None else corners
+    box = _box_along(_best_angle(points[:, :2], corners), points, settings, rim)
     if box.extents[1] > box.extents[0]:
         box = _box_along(box.yaw + np.pi / 2, points, settings, rim)
     return box
@@ -377,13 +394,13 @@ def _box_along(yaw: float, points: NDArray[np.float64], settings: OutlineSetting
     """Return the box with a side in the direction of ``yaw``."""
     yaw = float(np.pi / 2 - (np.pi / 2 - yaw) % np.pi)
     axes = turned_axes(yaw)
-    low, high = upright_box(points @ axes.T, settings, rim and rim.turned(axes[:2, :2]))
+    low, high = upright_box(coordinates(points, axes), settings, rim and rim.turned(axes[:2, :2]))
     (x, y, z), (length, width, height) = (axes.T @ ((low + high) / 2)).tolist(), (high - low).tolist()
     return OrientedBox((x, y, z), yaw, (length, width, height))
 
 
-def _best_angle(plan: NDArray[np.float64]) -> float:
-    corners = corners_of(plan)
+def _best_angle(plan: NDArray[np.float64], corners: NDArray[np.float64] | None) -> float:
+    """Return the yaw of the smallest rectangle around places (n, 2), whose convex hull has ``corners`` (k, 2)."""
     if corners is None:
         along = np.ptp(plan, axis=0)
         return float(np.arctan2(along[1], along[0])) if along.any() else 0.0

@@ -56,6 +56,10 @@ class ScaleSettings(_Thresholds):
     max_median_radius: float = 20.0
     """Metres. A cloud with half of its points farther from its middle is refused, such as one in millimetres. A few far
     points do not count. No scene or test tried depends on it."""
+    max_radius: float = 50.0
+    """Metres from the middle of a cloud, along each axis, beyond which points are left out: depth cameras do not
+    measure so far, and some write their largest number where they measure nothing. Tested by
+    test_points_far_from_the_others_are_left_out_and_noted."""
     min_table_length: float = 0.3
     """Metres. A shorter surface is hardly a table: it gets a note, or is a single object. Tested by
     test_a_very_small_table_gets_a_note, test_a_surface_as_wide_as_a_table_is_not_one_object."""

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import SECTORS, connected
+from deixis.perception.detection.quantiles import percentiles
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.table.plane import coordinates
 from deixis.perception.detection.table.tables import FoundTable
+from deixis.reasoning.geometry.coordinates import coordinates
 
 
 class Shows(StrEnum):
@@ -144,7 +145,7 @@ def _extents(points: NDArray[np.float64], settings: DetectionSettings) -> list[f
     points = points[:: max(1, len(points) // 20_000)]
     axes = np.linalg.svd(np.cov(points.T))[0]
     outliers = (settings.scale.outlier_percent, 100 - settings.scale.outlier_percent)
-    low, high = np.percentile(points @ axes, outliers, axis=0)
+    low, high = percentiles(points @ axes, outliers)
     extents: list[float] = np.sort(high - low).tolist()
     return extents
 

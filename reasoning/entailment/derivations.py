@@ -114,7 +114,7 @@ class OrderDerivations:
     def _stated(self) -> dict[tuple[str, int, str], int]:
         """Premises that state a fact directly: by subject, relation set and object."""
         stated: dict[tuple[str, int, str], int] = {}
-        for k in np.unique(self._bounds.premise).tolist():
+        for k in sorted(set(self._bounds.premise.ravel().tolist())):
             fact = self._premises[k]
             if isinstance(fact, Fact) and fact.positive:
                 stated.setdefault((fact.subject, fact.relation_set, fact.object), k)

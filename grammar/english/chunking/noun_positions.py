@@ -11,6 +11,7 @@ from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Degree, Span
 from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
     DETERMINERS,
     HEDGES,
     IS_FORMS,
@@ -390,6 +391,9 @@ class NounFinder:
             )
             if not named and not (form is not None and form.form == "s"):
                 return None
+            later = self.norms[at + 2]
+            if (after in ADVERBS or after.endswith("ly")) and (is_adjective(later) or later.endswith(("ed", "en"))):
+                return None  # 'A simply folded napkin'
             if is_adjective(after) and after not in ("left", "right"):
                 return None
         if text == "I":
@@ -441,7 +445,7 @@ class NounFinder:
         """Return True if a noun phrase goes on with a word as its noun, after the nouns that it has so far."""
         norm = self.norms[at]
         if norm[0].isdigit():
-            return bool(nouns) and norm.isdigit() and self.norms[at + 1] not in UNITS
+            return bool(nouns) and self.classes[at] == "noun" and self.norms[at + 1] not in UNITS
         if not nouns:
             return self.is_noun(at)
         named = self.is_name(at) and self._nouns.knows(nouns[-1]) and self.words[at - 1].text[:1].islower()

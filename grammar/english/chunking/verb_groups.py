@@ -157,10 +157,13 @@ class VerbChunker(RelatorChunker):
         """Return the verb after *and* that shares the modal verb before: *should be chilled and stand next to it*."""
         form = self._verbs.get(self.norms[at])
         last = next((c for c in reversed(self.chunks) if c.type in FINITE | {"PUT", "CUT"}), None)
-        if form is None or last is None or last.type not in FINITE or not self._predicate_after(at):
+        placed = self._predicate_after(at) or self._match(at + 1) is not None
+        if form is None or last is None or last.type not in FINITE or not placed:
             return None
         if last.value.lemma == "be" and self.norms[at] in ("put", "set", "laid", "stood", "hung"):
-            coordinated = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
+            be = next(i for i in range(len(self.chunks) - 1, -1, -1) if self.chunks[i] is last)
+            types = [chunk.type for chunk in self.chunks[be + 1 :] if chunk.type != "ADVERB"]
+            coordinated = types[:1] in (["PART"], ["TPART"]) and set(types[1:-1]).isdisjoint(JOINT_TYPES)
             return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if coordinated else None
         spatial = form.form == "base" and form.kind in ("posture", "lean", "face", "point")
         placed = last.value.lemma == "be" and self.chunks[-2].type == "NP"  # 'it should be on the tray and rest'
@@ -578,6 +581,8 @@ class VerbChunker(RelatorChunker):
             return False
         if self.nouns.number(at) is not None and self.norms[at + 1] in LAYERS:
             return False
+        if (self.norms[at], self.norms[at + 1]) in (("face", "up"), ("face", "down")):
+            return False  # 'the card is turned face up'
         found = self.nouns.phrase(at, "TVERB")
         return found is not None and found[1] is not None
 

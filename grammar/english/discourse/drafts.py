@@ -115,6 +115,7 @@ class Drafting:
         self.unreal: re.Match[str] | None = None  # words by which the sentence asserts nothing
         self.reports = False  # True for a sentence that tells what a person says
         self.elsewhere: str | None = None  # words of the sentence by which another place than the viewer's is meant
+        self.seen_from: str | None = None  # noun of the viewpoint that a sentence of its own states for the text
         self.titled: tuple[Predicate, ...] = ()  # place that the last heading names
         self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
         tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]

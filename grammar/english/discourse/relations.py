@@ -89,7 +89,25 @@ _LATERAL = frozenset({"left", "right"})
 """Relations after which *the other side* of a thing is the opposite one."""
 
 
-_ON_A_SIDE = re.compile(r"\b(?:on|at)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
+_STUFFS = word_set(
+    "oak pine walnut maple cherry birch beech teak mahogany bamboo steel brass copper bronze chrome aluminium aluminum"
+    " leather velvet linen cotton silk wool denim canvas marble granite porcelain acrylic plastic vinyl nylon polyester"
+)
+
+
+def _is_stuff(phrase: NounPhrase) -> bool:
+    """Return True for a material without an article and without a number: *oak* of *a chair in oak*."""
+    bare = phrase.determiner is None and phrase.owner is None and phrase.count is None and not phrase.plural
+    return bare and phrase.of is None and not phrase.members and last_word(phrase.head) in _STUFFS
+
+
+_WIDE = word_set(
+    "table desk bench workbench worktop counter countertop sideboard dresser shelf board pegboard whiteboard stage tray"
+    " rack wall bar buffet altar trolley cart"
+)
+"""Nouns of what carries or shows many things, each of which can be on one side of it."""
+
+_ON_A_SIDE = re.compile(r"\b(?:on|at|to)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
 """Words by which a side is a part of the surface, and not a direction from it."""
 
 
@@ -154,6 +172,9 @@ class Relations(Mentions):
         degree = self.text[self.references.start : predicate.span[0]].casefold().split()[-1:]
         if relation in ("near", "far") and degree in (["equally"], ["as"]):
             return  # 'equally far from the cross' compares, and says no distance
+        stuffs = [_is_stuff(a) for a in predicate.arguments]
+        if relation == "inside" and not predicate.reversed and stuffs and all(stuffs):
+            return  # 'a chair in oak', which says what it is made of
         if relation == "outside":
             hollow = all(last_word(a.head) in VESSELS | HOLDERS for a in predicate.arguments)
             if predicate.arguments and hollow and self.how.positive and not predicate.reversed:
@@ -293,11 +314,16 @@ class Relations(Mentions):
                 )
             return
         written = self.text[slice(*predicate.span)].casefold()
+        timed = relation == "in_front" and written.startswith("before ") and self.how.positive
+        if timed and any(entity.role is Role.THING for entity in entities):
+            self.how = self._guessed(Guess.BEFORE)  # 'put the knives out before the forks'
         on_a_side = relation in _LATERAL and not predicate.reversed and _ON_A_SIDE.search(written) is not None
         on_a_side = on_a_side and subject.role is not Role.SURFACE and last_word(subject.noun) not in FURNITURE
         for other in entities:
             if on_a_side and other.role is Role.SURFACE:
                 self._add("part", (subject,), (), value=relation)  # 'on the left side of the tray'
+            elif on_a_side and last_word(other.noun) in _WIDE and other.role is Role.THING and not other.members:
+                self._add("part", (subject,), (other,), value=relation)
             else:
                 self._pair(subject, relation, other, predicate.reversed)
 
@@ -573,6 +599,15 @@ class Relations(Mentions):
         if contrasted is not None:
             self._pair(subject, predicate.relation, contrasted, False)
             return
+        shared = self._of_what_follows(predicate)
+        if shared:
+            self._relate(subject, replace(predicate, arguments=shared, part=None), [])
+            return
+        sided = self.drafts[-1] if self.drafts else None
+        of_sides = sided is not None and sided.relation == "part" and sided.how.sentence == self.how.sentence
+        if sided is not None and of_sides and sided.arguments and sided.value == OPPOSITES.get(predicate.relation):
+            self._add("part", (subject,), sided.arguments, value=predicate.relation)
+            return  # 'pens on the left side of the board and pins on the right'
         across = self._side_of(subject, predicate)
         if across is not None:
             self.how = self._guessed(Guess.OF_THE_LAST)
@@ -639,6 +674,21 @@ class Relations(Mentions):
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
             self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _of_what_follows(self, predicate: Predicate) -> tuple[NounPhrase, ...]:
+        """Return the thing of which the next clause says the other side: *A to the left and B to the right of C*."""
+        clauses = self.sentences[self.how.sentence].clauses
+        following = next((c for c in clauses if c.span[0] >= predicate.span[1]), None)
+        if following is None or OPPOSITES.get(predicate.relation) not in DIRECTIONS or not self.how.positive:
+            return ()
+        return next(
+            (
+                p.arguments for p in following.predicates
+                if p.relation == OPPOSITES[predicate.relation] and p.positive and len(p.arguments) == 1
+                and p.arguments[0].head and not p.reversed
+            ),
+            (),
+        )  # fmt: skip
 
     def _side_of(self, subject: Entity, predicate: Predicate) -> Entity | None:
         """Return the thing of which *on the right* is the other side: *A on the left of the plate, B on the right*."""

@@ -229,6 +229,7 @@ ADVERBS = word_set(
     " together apart away nearby itself himself herself else instead please kindly basically kinda sorta obviously"
     " however therefore"
     " further farther close facedown freely freestanding separately individually alone solely lengthwise sideways"
+    " widthwise breadthwise crosswise endwise edgewise lengthways widthways crossways edgeways endways slantwise"
     " crosswise squarely thus hence consequently accordingly"
     " dead bang smack slap ever least most more less super extremely overnight"
     " later soon finally twice thrice"

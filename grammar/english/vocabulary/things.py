@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deixis.grammar.english.vocabulary.adjectives import adjectives
+from deixis.grammar.english.vocabulary.adjectives import QUALITIES, adjectives
 from deixis.grammar.english.vocabulary.function_words import (
     DETERMINERS,
     MODALS,
@@ -28,7 +28,7 @@ _ACTS = word_set(
     " measure delivery attempt try effort adjustment placement presentation preparation installation maintenance"
     " inspection measurement alignment orientation rotation transition conversation communication discussion"
     " interaction circulation navigation storage organisation organization consideration requirement"
-    " recommendation suggestion explanation description instruction direction exception tip idea option"
+    " recommendation suggestion explanation description instruction direction exception idea option"
     " choice decision plan goal aim purpose reason cause result consequence benefit advantage disadvantage drawback"
     " issue problem trouble mistake error question answer example instance case situation circumstance scenario"
     " condition state status way manner method technique approach strategy style fashion habit practice custom"
@@ -95,7 +95,7 @@ _NOUNS_LIKE_QUALITIES = word_set(
     " handful spoonful armful mouthful"
     " table timetable vegetable cable constable stable bible crucible dirigible collectible turntable worktable fable"
     " variable wearable consumable disposable perishable edible convertible thurible"
-    " negative positive digest"
+    " negative positive digest cosy cozy sharp"
 )
 """Nouns with such endings."""
 _ADVERBS_NOT = word_set(
@@ -125,6 +125,10 @@ _PARTICIPLES = word_set(
     " installing tucking"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
+_VERBAL = ("bute", "tute", "cate", "nate", "rate", "ize", "ify", "duce", "clude", "scribe", "volve")
+"""Endings of verbs, which stand after a plural in a clause."""
+_OF_MEANS = frozenset({"using", "including", "having", "containing"})
+"""Participles of clauses inside a run of words."""
 _OF_CLAUSES = (
     DETERMINERS
     | POSSESSIVES.keys()
@@ -161,6 +165,8 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     if not noun or noun.startswith(LITERAL) or (nouns.knows(noun) and noun not in _SELDOM_THINGS):
         return True
     words = noun.split()
+    if words[-1].isdigit():
+        return True  # 'number 9'
     if _is_piece_of_clause(words, nouns):
         return False
     if len(words) > 1 and words[-1] == "thing":
@@ -175,8 +181,18 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
 
 def _is_quality(word: str) -> bool:
     """Return True for a word with the form of an adjective: *expensive*, *scarcest*, *shorter*."""
+    if word in _NOUNS_LIKE_QUALITIES:
+        return False
     degree = adjectives().get(word) is not None and word.endswith(("er", "est"))
-    return degree or (word.endswith(_QUALIFYING) and word not in _NOUNS_LIKE_QUALITIES)
+    return degree or word in QUALITIES or _is_superlative(word) or word.endswith(_QUALIFYING)
+
+
+def _is_superlative(word: str) -> bool:
+    """Return True for the superlative of a quality: *sharpest*, *simplest*, *driest*."""
+    if not word.endswith("est"):
+        return False
+    stem = word.removesuffix("est")
+    return not QUALITIES.isdisjoint((stem, f"{stem}e", stem[:-1], f"{stem[:-1]}y"))
 
 
 def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
@@ -188,6 +204,10 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     at = words.index("can") if "can" in words[1:-1] else 0
     if at and not nouns.knows(words[at + 1]):
         return True  # 'rules can vary', not 'garbage can lid'
+    if words[-1].endswith(_VERBAL) and not nouns.knows(words[-1]) and nouns.singular(words[-2])[1]:
+        return True  # 'parts contribute'
+    if not _OF_MEANS.isdisjoint(words[1:]):
+        return True  # 'wall using nails'
     counted = words[0].endswith("ing") and not NUMBERS.keys().isdisjoint(words[1:-1])
     if words[0] in _PARTICIPLES or counted:  # 'placing lids', 'drilling two screws'
         return True

@@ -32,7 +32,7 @@ posture: sink sinks sank sunk sinking, wind winds wound wound winding, drive dri
 posture: weave weaves wove woven weaving
 posture: sling slings slung slung slinging, preset presets preset preset presetting
 posture: thrust thrusts thrust thrust thrusting, burn burns burnt burnt burning, loop, huddle, snuggle
-posture: deposit, follow, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
+posture: deposit, sort, follow, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
 lean: lean leans leant leant leaning, prop, lean
 face: face, stare, gaze, peer, view
 point: point, aim, direct, open

@@ -15,9 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.quantiles import median
 from deixis.perception.detection.segmentation.supervoxels import Supervoxels, sums
 from deixis.perception.detection.segmentation.surface import Surface
 from deixis.perception.detection.settings import BoundarySettings, DetectionSettings
+from deixis.reasoning.geometry.coordinates import norms
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +61,7 @@ def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettin
     pairs, lengths, jumped = meetings(patches.of, surface.neighbours, surface.points, surface.jump, len(patches))
     i, j = pairs.T
     sigma = sums(patches.of, surface.sigma) / patches.sizes
-    apart = np.median(np.linalg.norm(patches.middles[i] - patches.middles[j], axis=1)) if len(pairs) else 0.0
+    apart = median(norms(patches.middles.take(i, axis=0) - patches.middles.take(j, axis=0))) if len(pairs) else 0.0
     step = np.maximum(
         max(settings.step, limits.step_distance_ratio * apart), limits.step_noise_ratio * np.maximum(sigma[i], sigma[j])
     )
@@ -85,8 +87,9 @@ def creases(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float6
         Angles in [0, pi].
     """
     i, j = pairs.T
-    cosine = (patches.normals[i] * patches.normals[j]).sum(axis=1)
-    opening = ((patches.normals[i] - patches.normals[j]) * (patches.middles[i] - patches.middles[j])).sum(axis=1)
+    p, q = (patches.normals.take(k, axis=0) for k in (i, j))
+    between = patches.middles.take(i, axis=0) - patches.middles.take(j, axis=0)
+    cosine, opening = (p * q).sum(axis=1), ((p - q) * between).sum(axis=1)
     return np.where(opening < 0, np.arccos(np.clip(cosine, -1.0, 1.0)), 0.0)
 
 
@@ -111,11 +114,12 @@ def steps(patches: Supervoxels, pairs: NDArray[np.int64], off_edge_share: float)
         Distances that are at least 0.
     """
     i, j = pairs.T
-    normal = patches.normals[i] + patches.normals[j]
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-    between = patches.middles[i] - patches.middles[j]
-    half_angle_sine = np.linalg.norm(patches.normals[i] - patches.normals[j], axis=1) / 2
-    allowed = off_edge_share * np.linalg.norm(between, axis=1) * half_angle_sine
+    p, q = (patches.normals.take(k, axis=0) for k in (i, j))
+    normal = p + q
+    normal /= np.maximum(norms(normal), 1e-9)[:, None]
+    between = patches.middles.take(i, axis=0) - patches.middles.take(j, axis=0)
+    half_angle_sine = norms(p - q) / 2
+    allowed = off_edge_share * norms(between) * half_angle_sine
     over: NDArray[np.float64] = np.maximum(np.abs((normal * between).sum(axis=1)) - allowed, 0.0)
     return over
 

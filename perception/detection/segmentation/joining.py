@@ -17,7 +17,6 @@ from deixis.perception.detection.segmentation.parts import (
     Parts,
     apart,
     continues,
-    extents,
     inside,
     offset,
     roundness,
@@ -480,10 +479,9 @@ def sides(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def _is_sheet(parts: Parts, part: int) -> bool:
-    patches = parts.members[part]
-    normal = parts.patches.normals[patches].mean(axis=0)
+    normal = parts.patches.normals[parts.members[part]].mean(axis=0)
     upright = abs(normal[2]) < parts.settings.max_sheet_normal * np.linalg.norm(normal)
-    return bool(upright and extents(parts.patches.middles[patches, :2])[1] < parts.settings.patch_width)
+    return bool(upright and parts.extents(part)[1] < parts.settings.patch_width)
 
 
 def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.quantiles import medians
 from deixis.perception.detection.segmentation.surface import Surface
 from deixis.perception.detection.settings import DetectionSettings, LyingSettings
 
@@ -40,13 +41,12 @@ def with_lying_things(surface: Surface, of: NDArray[np.int32], settings: Detecti
     result, count = of.copy(), int(of.max()) + 1
     tints = surface.colours * (settings.supervoxels.lightness_weight, 1.0, 1.0)
     number = np.full(len(of), -1, np.int32)
-    order = np.argsort(of, kind="stable")
+    level, order = surface.normals[:, 2] > settings.lying.min_level_normal, np.argsort(of, kind="stable")
     for members in np.split(order, np.cumsum(np.bincount(of))[:-1]):
-        level = surface.normals[members, 2] > settings.lying.min_level_normal
-        if len(members) < 2 * settings.least_points or level.mean() < settings.lying.min_level_share:
+        if len(members) < 2 * settings.least_points or level[members].mean() < settings.lying.min_level_share:
             continue
-        shades = tints[members]
-        shades -= np.median(shades, axis=0)
+        shades = tints.take(members, axis=0)
+        shades -= medians(shades)
         unlike = np.sqrt(np.einsum("ij,ij->i", shades, shades))
         if (unlike > settings.joining.min_other_colour).sum() < settings.lying.min_core_points:
             continue
@@ -107,14 +107,16 @@ def _is_raised(surface: Surface, piece: NDArray[np.intp], below: NDArray[np.intp
     """Return True if a piece lies on a level surface that is seen around it, and is a little higher than it."""
     from scipy.spatial import ConvexHull, QhullError, cKDTree
 
-    limits, places, plan = settings.lying, surface.points[piece], surface.points[below, :2]
+    limits, places, plan = settings.lying, surface.points.take(piece, axis=0), surface.points.take(below, axis=0)[:, :2]
     low, high = places.min(axis=0), places.max(axis=0)
     if (high - low).max() < settings.least_length:
         return False
-    below = below[((plan > low[:2] - limits.reach) & (plan < high[:2] + limits.reach)).all(axis=1)]
+    inside = ((plan > low[:2] - limits.reach) & (plan < high[:2] + limits.reach)).all(axis=1)
+    below, plan = below[inside], plan[inside]
     if len(below) < limits.min_ring_points or surface.normals[below, 2].mean() < limits.min_level_normal:
         return False
-    away = cKDTree(places[:, :2]).query(surface.points[below, :2])[0]
+    tree = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False)
+    away = tree.query(plan, distance_upper_bound=limits.reach)[0]
     ring = below[(away > limits.edge) & (away < limits.reach)]
     if len(ring) < limits.min_ring_points or surface.normals[ring, 2].mean() < limits.min_level_normal:
         return False

@@ -7,21 +7,21 @@ or in one plane. Only pairs that meet or are near each other are examined, so th
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.outline import SECTORS, circle_around
+from deixis.perception.detection.outline import SECTORS, circle_around, corners_of
 from deixis.perception.detection.segmentation.boundaries import Boundaries
-from deixis.perception.detection.segmentation.supervoxels import Supervoxels, means, sums
+from deixis.perception.detection.segmentation.supervoxels import Supervoxels, sums
 from deixis.perception.detection.settings import JoiningSettings
 
-Measure = Callable[["Parts", NDArray[np.intp], NDArray[np.intp]], float]
+Measure = Callable[["Parts", int, int], float]
+Known = TypeVar("Known")
 
 _NONE = np.zeros(0, np.intp)
 
@@ -42,7 +42,7 @@ class Measures:
     bulge: NDArray[np.float64]  # (p,): 1 a sphere from outside, 0 a plane, -1 a sphere from inside
 
     @classmethod
-    def of(cls, part: NDArray[np.integer], patches: Supervoxels, chosen: NDArray[np.intp] | slice) -> Measures:
+    def of(cls, part: NDArray[np.integer], patches: Supervoxels, chosen: NDArray[np.intp]) -> Measures:
         """Return the measures of the parts of the chosen patches.
 
         Parameters
@@ -52,34 +52,28 @@ class Measures:
         patches
             All patches of the surface.
         chosen
-            Indices of k patches, or a slice of them.
+            Indices of k patches.
 
         Returns
         -------
         Measures
             One row for each part.
         """
-        places, weights = patches.middles[chosen], patches.weights[chosen]
-        tints, sizes, normals = patches.tints[chosen], patches.sizes[chosen], patches.normals[chosen]
-        count = int(part.max()) + 1 if len(part) else 0
-        low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-        np.minimum.at(low, part, places)
-        np.maximum.at(high, part, places)
-        centres, colours = means(part, places, sizes), means(part, tints, weights)
-        varied = ((tints - colours[part]) ** 2).sum(axis=1)
-        out = places - centres[part]
-        along = sums(part, (out * normals).sum(axis=1) * sizes)
+        from deixis.perception.detection.kernels import measures_of_parts
+
+        shape = (patches.sizes, patches.weights, patches.middles, patches.normals, patches.tints, patches.areas)
+        low, high, centres, colours, totals = measures_of_parts(part.astype(np.int64), chosen, *shape)
         return cls(
-            sizes=sums(part, sizes),
-            areas=sums(part, patches.areas[chosen]),
+            sizes=totals[0],
+            areas=totals[1],
             tops=high[:, 2],
             bottoms=low[:, 2],
             middles=centres[:, 2],
             low=low[:, :2],
             high=high[:, :2],
             colours=colours,
-            motley=np.sqrt(sums(part, varied * weights) / sums(part, weights)),
-            bulge=along / np.maximum(sums(part, np.linalg.norm(out, axis=1) * sizes), 1e-9),
+            motley=totals[2],
+            bulge=totals[3],
         )
 
     def put(self, part: int, other: Measures) -> None:
@@ -175,20 +169,27 @@ class Parts:
 
     def _start(self, of: NDArray[np.integer]) -> None:
         self._known: dict[tuple[object, ...], float] = {}
-        self._hulls: dict[int, tuple[int, NDArray[np.float64] | None]] = {}  # with the number of changes of the part
-        self._trees: dict[int, tuple[int, Any]] = {}
+        self._of_parts: dict[tuple[object, int], tuple[int, Any]] = {}  # with the number of changes of the part
         count = int(of.max()) + 1 if len(of) else 0
         order = np.argsort(of, kind="stable")
         ends = np.cumsum(np.bincount(of, minlength=count)).tolist()
         self.members = [order[start:end] for start, end in pairwise([0, *ends])]
-        self.measures = Measures.of(of, self.patches, slice(None))
+        self.measures = Measures.of(of, self.patches, np.arange(len(of)))
         self.there = np.ones(count, dtype=np.bool_)
         self._set_aside = np.zeros(count, dtype=np.bool_)
         self.changes = [0] * count
-        first, second, met = _between(of, self.patches, self._meeting)
-        self._around: list[dict[int, NDArray[np.float64]]] = [{} for _ in range(count)]
-        for a, b, row in zip(first.tolist(), second.tolist(), met, strict=True):
-            self._around[a][b] = row
+        self._all_meetings: Pairs | None = Pairs(*_between(of, self.patches, self._meeting))
+        self._met: list[dict[int, NDArray[np.float64]]] | None = None
+
+    @property
+    def _around(self) -> list[dict[int, NDArray[np.float64]]]:
+        """Parts that each part meets, with the rows of ``Pairs.met``; made when a boundary is first asked for."""
+        if self._met is None:
+            assert self._all_meetings is not None, "no parts were joined before"
+            self._met, pairs = [{} for _ in self.members], self._all_meetings
+            for a, b, row in zip(pairs.first.tolist(), pairs.second.tolist(), pairs.met, strict=True):
+                self._met[a][b] = row
+        return self._met
 
     def __len__(self) -> int:
         return int(self.there.sum())
@@ -213,10 +214,13 @@ class Parts:
         """
         least = np.argsort(-self.measures.sizes, kind="stable")[count:]
         self._set_aside[least] = True
+        if not len(least):
+            return
+        around, self._all_meetings = self._around, None
         for part in least.tolist():
-            for other in self._around[part]:
-                del self._around[other][part]
-            self._around[part] = {}
+            for other in around[part]:
+                del around[other][part]
+            around[part] = {}
 
     def join_all(self, first: NDArray[np.intp], second: NDArray[np.intp]) -> None:
         """Join the parts of each pair, and renumber all parts.
@@ -256,15 +260,16 @@ class Parts:
         self.changes[a] += 1
         self.changes[b] += 1
         self.measures.put(a, Measures.of(np.zeros(len(self.members[a]), np.intp), self.patches, self.members[a]))
-        own = self._around[a]
+        around, self._all_meetings = self._around, None
+        own = around[a]
         own.pop(b, None)
-        for c, row in self._around[b].items():
+        for c, row in around[b].items():
             if c != a:
-                back = self._around[c]
+                back = around[c]
                 del back[b]
                 own[c] = own[c] + row if c in own else row
                 back[a] = own[c] * (1.0, 1.0, 1.0, -1.0)
-        self._around[b] = {}
+        around[b] = {}
         return a
 
     def meetings(self, part: int | None = None) -> Pairs:
@@ -280,11 +285,14 @@ class Parts:
         Pairs
             Pairs in ascending order.
         """
-        parts: Iterable[int] = range(len(self._around)) if part is None else (part,)
-        ends = [(a, b) for a in parts for b in self._around[a]]
         if part is not None:
+            ends = [(part, other) for other in self._around[part]]
             ends += [(b, a) for a, b in ends]
-        return self.pairs(np.array(sorted(ends), np.intp).reshape(-1, 2))
+            return self.pairs(np.array(sorted(ends), np.intp).reshape(-1, 2))
+        if self._all_meetings is None:
+            ends = [(a, b) for a, others in enumerate(self._around) for b in others]
+            self._all_meetings = self.pairs(np.array(sorted(ends), np.intp).reshape(-1, 2))
+        return self._all_meetings
 
     def near(self, gap: float, part: int | None = None) -> Pairs:
         """Return all pairs whose boxes seen from above are close to each other, in both orders.
@@ -367,15 +375,37 @@ class Parts:
         ndarray or None
             Unit normal and offset of each side, shape (k, 3), negative for places inside.
         """
-        from scipy.spatial import ConvexHull, QhullError
+        return self._kept(_hull, part)
 
-        if (found := self._hulls.get(part)) is None or found[0] != self.changes[part]:
-            sides = None
-            if len(self.members[part]) >= 3:
-                with contextlib.suppress(QhullError):
-                    sides = ConvexHull(self.patches.middles[self.members[part], :2]).equations
-            self._hulls[part] = found = (self.changes[part], sides)
-        return found[1]
+    def axes(self, part: int) -> NDArray[np.float64]:
+        """Return the principal axes of a part seen from above.
+
+        Parameters
+        ----------
+        part
+            Number of the part.
+
+        Returns
+        -------
+        ndarray
+            Unit vectors as columns, shape (2, 2), the longer axis first.
+        """
+        return self._kept(_axes, part)
+
+    def extents(self, part: int) -> NDArray[np.float64]:
+        """Return the length and width of a part along its principal axes as seen from above.
+
+        Parameters
+        ----------
+        part
+            Number of the part.
+
+        Returns
+        -------
+        ndarray
+            Length and width in metres, shape (2,).
+        """
+        return self._kept(_extents, part)
 
     def plan_tree(self, part: int) -> Any:
         """Return a k-d tree of the patches of a part seen from above.
@@ -390,11 +420,30 @@ class Parts:
         scipy.spatial.cKDTree
             Tree of the middles of the patches in plan, in metres.
         """
-        from scipy.spatial import cKDTree
+        return self._kept(_plan_tree, part)
 
-        if (found := self._trees.get(part)) is None or found[0] != self.changes[part]:
-            self._trees[part] = found = (self.changes[part], cKDTree(self.patches.middles[self.members[part], :2]))
-        return found[1]
+    def _kept(self, measure: Callable[[Parts, int], Known], part: int) -> Known:
+        """Return a measure of a part; it is computed once, until the part changes."""
+        found = self._of_parts.get((measure, part))
+        if found is None or found[0] != self.changes[part]:
+            self._of_parts[measure, part] = found = (self.changes[part], measure(self, part))
+        result: Known = found[1]
+        return result
+
+    def places(self, part: int) -> NDArray[np.float64]:
+        """Return the middles of the patches of a part.
+
+        Parameters
+        ----------
+        part
+            Number of the part.
+
+        Returns
+        -------
+        ndarray
+            Places of shape (k, 3), in metres.
+        """
+        return self.patches.middles.take(self.members[part], axis=0)
 
     def once(self, measure: Measure, a: int, b: int) -> float:
         """Return a measure of the patches of two parts; it is computed once, until one of the parts changes.
@@ -402,7 +451,7 @@ class Parts:
         Parameters
         ----------
         measure
-            Function of this partition and of the patches of both parts.
+            Function of this partition and of both parts.
         a, b
             Numbers of the two parts.
 
@@ -413,7 +462,7 @@ class Parts:
         """
         key = (measure, a, self.changes[a], b, self.changes[b])
         if key not in self._known:
-            self._known[key] = measure(self, self.members[a], self.members[b])
+            self._known[key] = measure(self, a, b)
         return self._known[key]
 
 
@@ -435,6 +484,36 @@ def _between(
     return codes // count, codes % count, met
 
 
+def _hull(parts: Parts, part: int) -> NDArray[np.float64] | None:
+    from scipy.spatial import ConvexHull, QhullError
+
+    if len(parts.members[part]) < 3:
+        return None
+    try:
+        sides: NDArray[np.float64] = ConvexHull(parts.places(part)[:, :2]).equations
+    except QhullError:
+        return None
+    return sides
+
+
+def _plan_tree(parts: Parts, part: int) -> Any:
+    from scipy.spatial import cKDTree
+
+    return cKDTree(parts.places(part)[:, :2])
+
+
+def _axes(parts: Parts, part: int) -> NDArray[np.float64]:
+    plan = parts.places(part)[:, :2]
+    apart = plan - plan.mean(axis=0)
+    axes: NDArray[np.float64] = np.linalg.eigh(apart.T @ apart)[1][:, ::-1]
+    return axes
+
+
+def _extents(parts: Parts, part: int) -> NDArray[np.float64]:
+    extents: NDArray[np.float64] = np.ptp(parts.places(part)[:, :2] @ parts.axes(part), axis=0)
+    return extents
+
+
 def inside(parts: Parts, inner: int, outer: int) -> float:
     """Return the fraction of the patches of a part inside the convex hull of another, as seen from above.
 
@@ -453,7 +532,7 @@ def inside(parts: Parts, inner: int, outer: int) -> float:
     hull = parts.hull(outer)
     if hull is None:
         return 0.0
-    plan = parts.patches.middles[parts.members[inner], :2]
+    plan = parts.places(inner)[:, :2]
     return float(((plan @ hull[:, :2].T + hull[:, 2]).max(axis=1) <= parts.settings.inside_tolerance).mean())
 
 
@@ -484,7 +563,7 @@ def apart(parts: Parts, a: int, b: int) -> float:
     float
         Distance between the middles of patches.
     """
-    return float(parts.plan_tree(b).query(parts.patches.middles[parts.members[a], :2])[0].min())
+    return float(parts.plan_tree(b).query(parts.places(a)[:, :2])[0].min())
 
 
 def continues(parts: Parts, a: int, b: int, over: Iterable[int]) -> bool:
@@ -515,9 +594,9 @@ def continues(parts: Parts, a: int, b: int, over: Iterable[int]) -> bool:
     )  # otherwise a fork and a knife beside a plate would match
 
 
-def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
+def _share_of_one_plane(parts: Parts, one: int, two: int) -> float:
     """Return the fraction of the nearest patches of two parts that lie in one plane."""
-    p, q = _nearest(parts, one, two)
+    p, q = _nearest(parts, parts.members[one], parts.members[two])
     if not len(p):
         return 0.0
     middles, normals = parts.patches.middles, parts.patches.normals
@@ -540,7 +619,7 @@ def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tupl
     return one[close], two[nearest[close]]
 
 
-def steepness(parts: Parts, upper: NDArray[np.intp], lower: NDArray[np.intp]) -> float:
+def steepness(parts: Parts, upper: int, lower: int) -> float:
     """Return the fraction of the patches below a part that slope outwards from the middle of their part.
 
     Parameters
@@ -548,7 +627,7 @@ def steepness(parts: Parts, upper: NDArray[np.intp], lower: NDArray[np.intp]) ->
     parts
         Partition of the patches.
     upper, lower
-        Indices of the patches of the two parts; those of ``lower`` that are nearest to ``upper`` count.
+        Numbers of the two parts; the patches of ``lower`` that are nearest to ``upper`` count.
 
     Returns
     -------
@@ -557,18 +636,18 @@ def steepness(parts: Parts, upper: NDArray[np.intp], lower: NDArray[np.intp]) ->
     """
     from scipy.spatial import cKDTree
 
-    middles, normals = parts.patches.middles, parts.patches.normals
-    distance, nearest = cKDTree(middles[lower]).query(middles[upper])
-    below = np.unique(lower[nearest[distance < distance.min() + parts.settings.patch_width]])
+    middles, normals, body = parts.patches.middles, parts.patches.normals, parts.places(lower)
+    distance, nearest = cKDTree(body).query(parts.places(upper))
+    below = np.unique(parts.members[lower][nearest[distance < distance.min() + parts.settings.patch_width]])
     if len(below) < parts.settings.min_shoulder_patches:
         return 0.0
-    centre = (middles[lower, :2].min(axis=0) + middles[lower, :2].max(axis=0)) / 2
+    centre = (body[:, :2].min(axis=0) + body[:, :2].max(axis=0)) / 2
     outwards = ((middles[below, :2] - centre) * normals[below, :2]).sum(axis=1) > 0
     least, greatest = parts.settings.min_shoulder_normal, parts.settings.max_shoulder_normal
     return float((outwards & (normals[below, 2] > least) & (normals[below, 2] < greatest)).mean())
 
 
-def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
+def roundness(parts: Parts, one: int, two: int) -> float:
     """Return the fraction of a circle that the edges of two parts cover seen from above; 0 if they do not fit one.
 
     Parameters
@@ -576,20 +655,20 @@ def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> flo
     parts
         Partition of the patches.
     one, two
-        Indices of the patches of each part.
+        Numbers of the two parts.
 
     Returns
     -------
     float
         Fraction in [0, 1].
     """
-    plan = parts.patches.middles[np.concatenate([one, two]), :2]
+    plan = np.concatenate([parts.places(part)[:, :2] for part in (one, two)])
     tolerance = parts.settings.rim_tolerance
-    circle = circle_around(plan, tolerance)
+    circle = circle_around(corners_of(plan), tolerance)
     return 0.0 if circle is None else len(circle.sectors(plan, tolerance)) / SECTORS
 
 
-def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
+def slenderness(parts: Parts, one: int, two: int) -> float:
     """Return the ratio of length to width of two parts together, if they lie end to end; else 0.
 
     Parameters
@@ -597,16 +676,15 @@ def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> f
     parts
         Partition of the patches.
     one, two
-        Indices of the patches of each part.
+        Numbers of the two parts.
 
     Returns
     -------
     float
         Ratio without a unit; 0 also if the two are too long or too wide for cutlery.
     """
-    plans = [parts.patches.middles[part, :2] for part in (one, two)]
-    longer = max(plans, key=lambda plan: extents(plan)[0])
-    turned = [plan @ _axes(longer) for plan in plans]
+    longer = max((one, two), key=lambda part: parts.extents(part)[0])
+    turned = [parts.places(part)[:, :2] @ parts.axes(longer) for part in (one, two)]
     low, high = (np.array([end(plan, axis=0) for plan in turned]) for end in (np.min, np.max))
     (length, width), (along, across) = high.max(axis=0) - low.min(axis=0), high.min(axis=0) - low.max(axis=0)
     settings = parts.settings
@@ -618,7 +696,7 @@ def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> f
     return float(length / max(width, settings.patch_width))
 
 
-def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
+def offset(parts: Parts, one: int, two: int) -> float:
     """Return the difference in height of two parts in a line in metres, each extrapolated to the middle between them.
 
     It is small if both are pieces of one straight object, level or leaning.
@@ -628,16 +706,16 @@ def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
     parts
         Partition of the patches.
     one, two
-        Indices of the patches of each part.
+        Numbers of the two parts.
 
     Returns
     -------
     float
         Absolute difference in metres.
     """
-    places = [parts.patches.middles[part] for part in (one, two)]
-    longer = max(places, key=lambda place: extents(place[:, :2])[0])
-    along = _axes(longer[:, :2])[:, 0]
+    places = [parts.places(part) for part in (one, two)]
+    longer = max((one, two), key=lambda part: parts.extents(part)[0])
+    along = parts.axes(longer)[:, 0]
     near, far = sorted((place[:, :2] @ along for place in places), key=np.mean)
     between = (near.max() + far.min()) / 2
     heights = [_height_at(place[:, :2] @ along - between, place[:, 2], parts.settings.patch_width) for place in places]
@@ -649,27 +727,3 @@ def _height_at(along: NDArray[np.float64], heights: NDArray[np.float64], width: 
     off = along - along.mean()
     slope = float(off @ heights) / max(float(off @ off), width**2)
     return float(heights.mean() - slope * along.mean())
-
-
-def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the principal axes of places (n, 2) as columns (2, 2), the longer one first."""
-    apart = plan - plan.mean(axis=0)
-    axes: NDArray[np.float64] = np.linalg.eigh(apart.T @ apart)[1][:, ::-1]
-    return axes
-
-
-def extents(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the length and width (2,) of places (n, 2) along their principal axes.
-
-    Parameters
-    ----------
-    plan
-        Places in plan, shape (n, 2), in metres.
-
-    Returns
-    -------
-    ndarray
-        Length and width in metres, shape (2,).
-    """
-    extents: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
-    return extents

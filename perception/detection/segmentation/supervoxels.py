@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.quantiles import median
 from deixis.perception.detection.segmentation.surface import Surface
 from deixis.perception.detection.settings import SupervoxelSettings
 
@@ -63,8 +64,8 @@ def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
     """
     from deixis.perception.detection.kernels import grow
 
-    noisy = np.clip(settings.spacing_noise_ratio * np.median(surface.sigma), settings.min_spacing, settings.max_spacing)
-    spacing = float(max(noisy, settings.spacing_neighbour_ratio * np.median(surface.spacing)))
+    noisy = np.clip(settings.spacing_noise_ratio * median(surface.sigma), settings.min_spacing, settings.max_spacing)
+    spacing = float(max(noisy, settings.spacing_neighbour_ratio * median(surface.spacing)))
     seeds = _seeds(surface.smooth, spacing)
     shape = (surface.points, surface.smooth, surface.normals, surface.colours)
     costs = (settings.turn_cost, settings.step_cost, settings.colour_cost, settings.colour_noise)

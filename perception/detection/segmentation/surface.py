@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.quantiles import median
 from deixis.perception.detection.settings import SurfaceSettings
+from deixis.reasoning.geometry.coordinates import norms
 from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 
@@ -40,7 +42,7 @@ def surface_of(
     sigma: NDArray[np.float64],
     eye: NDArray[np.float64],
     settings: SurfaceSettings,
-    pixels: tuple[NDArray[np.intp], NDArray[np.intp]] | None = None,
+    pixels: tuple[NDArray[np.integer], NDArray[np.integer]] | None = None,
 ) -> Surface:
     """Return the surface through points, with its normals, noise and depth jumps.
 
@@ -68,11 +70,11 @@ def surface_of(
     """
     from deixis.perception.detection.kernels import gaps, mixed, planes, planes_in_image
 
-    distance = np.linalg.norm(points - eye, axis=1)
+    distance = norms(points - eye)
     apart = gaps(points, neighbours)
     known = (apart / np.maximum(distance, 1e-6))[apart >= 0]
     # the mean distance of eight neighbours is 1.2 sides of a pixel; it grows with the distance from the sensor
-    spacing = distance * float(np.median(known) if len(known) else 0.0) / 1.2
+    spacing = distance * (median(known) if len(known) else 0.0) / 1.2
     jump = np.maximum(
         np.maximum(settings.min_jump, settings.jump_noise_ratio * sigma), settings.jump_spacing_ratio * spacing
     )

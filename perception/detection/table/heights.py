@@ -12,7 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.quantiles import median
 from deixis.perception.detection.settings import DetectionSettings, HeightSettings
+from deixis.perception.detection.table.neighbours import Neighbours
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +52,7 @@ class Raised:
 def raised(
     heights: NDArray[np.float64],
     distance: NDArray[np.float64],
-    neighbours: NDArray[np.int32],
+    neighbours: Neighbours,
     settings: DetectionSettings,
 ) -> Raised:
     """Return the points above the table, from their heights.
@@ -64,7 +66,7 @@ def raised(
     distance
         Distances of the points from the sensor, shape (n,), in metres.
     neighbours
-        Indices of the neighbours of each point, shape (n, 8); -1 for missing ones.
+        Neighbours of the points.
     settings
         Thresholds, in metres and in units of the noise.
 
@@ -77,17 +79,15 @@ def raised(
     -----
     The growth of the noise is that of Khoshelham and Elberink (2012).
     """
-    from deixis.perception.detection.kernels import averaged, grown
-
     limits = settings.heights
     growth = np.maximum(distance, limits.min_noise_distance) ** 2
     noise = _noise(heights, growth, limits)
-    mean = averaged(heights, neighbours, np.maximum(6 * noise * growth, settings.height), limits.smoothing_rounds)
+    mean = neighbours.averaged(heights, np.maximum(6 * noise * growth, settings.height), limits.smoothing_rounds)
     left = _noise(mean, growth, limits)
     upper = np.maximum(settings.height, limits.upper_threshold * left * growth)
     lower = np.maximum(settings.height / 4, limits.lower_threshold * left * growth)
     highest = settings.reach
-    above = grown((mean > upper) & (mean < highest), (mean > lower) & (mean < highest), neighbours)
+    above = neighbours.grown((mean > upper) & (mean < highest), (mean > lower) & (mean < highest))
     return Raised(above, (mean >= highest) | (heights >= highest), noise, left, limits)
 
 
@@ -96,6 +96,7 @@ def _noise(heights: NDArray[np.float64], growth: NDArray[np.float64], limits: He
 
     It uses only the points below the plane, because objects are among those above.
     """
-    scaled = heights / growth
-    below = -scaled[(scaled < 0) & (scaled > -limits.noise_band)]
-    return max(float(1.4826 * np.median(below)), limits.min_noise) if len(below) else limits.min_noise
+    from deixis.perception.detection.kernels import depths_below
+
+    below = depths_below(heights, growth, limits.noise_band)
+    return max(1.4826 * median(below), limits.min_noise) if len(below) else limits.min_noise

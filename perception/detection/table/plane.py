@@ -12,41 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import in_largest_piece
+from deixis.perception.detection.quantiles import percentiles
 from deixis.perception.detection.settings import DetectionSettings, PlaneSettings
-
-_BLOCK = 4096
-"""Number of points that are multiplied at once, too few for BLAS to start threads."""
-
-
-def coordinates(points: NDArray[np.floating], axes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the coordinates of points along one axis or several: the product ``points @ axes.T``.
-
-    Parameters
-    ----------
-    points
-        Points of shape (n, 3), in metres.
-    axes
-        Vector of shape (3,), or several of shape (k, 3).
-
-    Returns
-    -------
-    ndarray
-        Coordinates of shape (n,) or (n, k).
-
-    Notes
-    -----
-    The points are multiplied in blocks, because BLAS starts threads for large products. With so few columns, they use
-    more than ten times the processor time of the product.
-
-    Examples
-    --------
-    >>> coordinates(np.array([[1.0, 2.0, 3.0]]), np.eye(3)[1:]).tolist()
-    [[2.0, 3.0]]
-    """
-    result = np.empty((len(points), *axes.shape[:-1]))
-    for start in range(0, len(points), _BLOCK):
-        np.matmul(points[start : start + _BLOCK], axes.T, out=result[start : start + _BLOCK])
-    return result
+from deixis.reasoning.geometry.coordinates import coordinates
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,7 +235,7 @@ def level_of(
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
     lower = sample[plane.heights(sample) < -settings.below_ratio * tolerance]
     piece = _largest_piece(plane, on)
-    standing, below = _standing(plane, piece, free, settings), _standing(plane.turned(), piece, lower, settings)
+    standing, below = _standing(plane, piece, (free, lower), settings)
     return LevelPlane(plane, on, standing, below)
 
 
@@ -387,22 +355,30 @@ def _largest_piece(plane: Plane, on: NDArray[np.float64]) -> NDArray[np.float64]
     if len(on) < 3:
         return on
     plan = coordinates(on, plane.across)
-    extents = np.subtract(*np.percentile(plan, (99, 1), axis=0))
+    extents = np.subtract(*percentiles(plan, (99, 1)))
     return on[in_largest_piece(plan, 3 * float(np.sqrt(extents.prod() / len(on))))]
 
 
-def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:
-    """Return the number of ``free`` points that are above the outline of the points ``on`` the plane.
+def _standing(
+    plane: Plane,
+    on: NDArray[np.float64],
+    sides: tuple[NDArray[np.float64], NDArray[np.float64]],
+    settings: PlaneSettings,
+) -> tuple[int, int]:
+    """Return the numbers of points that are within the outline of the points ``on`` the plane, above and below it.
 
-    The outline is a polygon with sides in fixed directions, a little inside, because the edge of a table is often seen.
+    ``sides`` holds the points that count above the plane, and those that count below. The outline is a polygon with
+    sides in fixed directions, a little inside, because the edge of a table is often seen.
     """
     if len(on) < 3:
-        return 0
+        return 0, 0
     turns = np.arange(settings.outline_sides) * np.pi / settings.outline_sides
     across = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
-    low, high = np.percentile(coordinates(on, across), (1, 99), axis=0)
-    heights = plane.heights(free)
-    standing = (heights > settings.min_standing_height) & (heights < settings.max_standing_height)
-    plan = coordinates(free[standing], across)
-    inside = (plan >= low + settings.outline_inset) & (plan <= high - settings.outline_inset)
-    return int(inside.all(axis=1).sum())
+    low, high = percentiles(coordinates(on, across), (1, 99))
+    found = []
+    for points, heights in zip(sides, (plane.heights(sides[0]), -plane.heights(sides[1])), strict=True):
+        standing = (heights > settings.min_standing_height) & (heights < settings.max_standing_height)
+        plan = coordinates(points[standing], across)
+        inside = (plan >= low + settings.outline_inset) & (plan <= high - settings.outline_inset)
+        found.append(int(inside.all(axis=1).sum()))
+    return found[0], found[1]

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import hull_of, in_largest_piece
 from deixis.perception.detection.settings import DetectionSettings, TableTopSettings
-from deixis.perception.detection.table.plane import Plane, coordinates
+from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import View, directions
+from deixis.reasoning.geometry.coordinates import coordinates
 
 _EMPTY, _LEVEL, _ABOVE, _BELOW = 0, 1, 2, 3
 """Content of a cell of the image: nothing, the plane, something above it, or something below it."""
@@ -105,9 +106,9 @@ def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop
     chosen[sizes.argmax()] = True
     wide = np.bincount(parts.ravel(), minlength=count + 1) >= limits.min_part_cells
     left = [int(part) for part in np.argsort(-sizes) if part and wide[part] and not chosen[part]]
-    upright = _upright(view.points, of, heights, plane, settings) if left else chosen
     while more := [part for part in left if _goes_on(shown, chosen[parts], parts == part, limits)]:
-        chosen[[part for part in more if not upright[part]]] = True
+        upright = _upright(view.points, of, more, heights, plane, settings)
+        chosen[[part for part in more if part not in upright]] = True
         left = [part for part in left if part not in more]
     return TableTop(plane, view.points, np.flatnonzero(chosen[of]), settings)
 
@@ -163,26 +164,31 @@ def _shown(
 def _upright(
     points: NDArray[np.float64],
     of: NDArray[np.intp],
+    wanted: list[int],
     heights: NDArray[np.float64],
     plane: Plane,
     settings: DetectionSettings,
-) -> NDArray[np.bool_]:
-    """Return True for each part that has something right above nearly all of it: a strip of a wall or a tall object.
+) -> set[int]:
+    """Return the wanted parts with something right above nearly all of them: strips of a wall and tall objects.
 
     ``of`` (n,) gives the part of each point, from 1; 0 for points that are not level with the plane.
     """
-    limits = settings.top
-    above = (heights > settings.plane.table_band) & (heights < settings.reach)
-    used = np.flatnonzero((of > 0) | above)
-    plan = np.floor(coordinates(points[used], plane.across) / limits.plan_cell).astype(np.int64)
-    plan -= plan.min(axis=0)
-    cells = np.unique(plan[:, 0] * (int(plan[:, 1].max()) + 1) + plan[:, 1], return_inverse=True)[1]
-    count = int(cells.max()) + 1
-    is_covered = np.bincount(cells[above[used]], minlength=count) > 0
-    part, cell = np.divmod(np.unique(of[used] * count + cells), count)
-    own = np.bincount(part)
-    covered = np.bincount(part[is_covered[cell]], minlength=len(own))
-    return covered > limits.max_covered_share * own
+    limits, is_wanted = settings.top, np.zeros(int(of.max()) + 1, dtype=np.bool_)
+    is_wanted[wanted] = True
+    on = np.flatnonzero(is_wanted[of])
+    above = np.flatnonzero((heights > settings.plane.table_band) & (heights < settings.reach))
+    below, over = (
+        np.floor(coordinates(points.take(some, axis=0), plane.across) / limits.plan_cell).astype(np.int64)
+        for some in (on, above)
+    )
+    low, high = below.min(axis=0), below.max(axis=0)
+    over = over[((over >= low) & (over <= high)).all(axis=1)]
+    below, over = ((cells - low) @ (high[1] - low[1] + 1, 1) for cells in (below, over))
+    cells, cell = np.unique(below, return_inverse=True)
+    is_covered = np.isin(cells, over)
+    part, cell = np.divmod(np.unique(of[on] * len(cells) + cell), len(cells))
+    own, covered = np.bincount(part), np.bincount(part[is_covered[cell]], minlength=len(is_wanted))
+    return {k for k in wanted if covered[k] > limits.max_covered_share * own[k]}
 
 
 def _goes_on(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.table.plane import CameraPose, Plane, level_of, table_plane, tolerance_at
 from deixis.perception.detection.table.table_top import TableTop, largest_part_length, table_top
-from deixis.perception.detection.table.viewpoint import View, likeliest_pose, sampled, verified_pose
+from deixis.perception.detection.table.viewpoint import View, is_sure, likeliest_pose, sampled, verified_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,14 +48,22 @@ def tables(view: View, settings: DetectionSettings) -> Iterator[FoundTable]:
     plane, left = base, replace(view, pose=pose)
     while plane is not None:
         top = table_top(left, plane, settings)
-        near = np.flatnonzero(top.outside <= settings.top.margin)
-        around = left.points[sampled(near if len(near) else np.arange(len(left.points)), settings)]
-        own = verified_pose(pose if pose.known else view.pose, around, settings)
-        own = likeliest_pose(own, around, plane, settings)
+        own = _own_pose(pose if pose.known else view.pose, top, settings)
         yield FoundTable(plane, top, replace(left, pose=own))
-        left = left.take(np.flatnonzero(~top.is_below))
-        enough = len(left.points) >= settings.plane.min_inlier_share * len(points)
-        plane = _another(left.points, plane, own, settings) if enough else None
+        beside = np.flatnonzero(~top.is_below)
+        if len(beside) < settings.plane.min_inlier_share * len(points):
+            return
+        left = left.take(beside)
+        plane = _another(left.points, plane, own, settings)
+
+
+def _own_pose(pose: CameraPose, top: TableTop, settings: DetectionSettings) -> CameraPose:
+    """Return the viewpoint of the points around a table."""
+    if is_sure(pose, top.plane, settings):
+        return pose
+    near = np.flatnonzero(top.outside <= settings.top.margin)
+    around = top.points[sampled(near if len(near) else np.arange(len(top.points)), settings)]
+    return likeliest_pose(verified_pose(pose, around, settings), around, top.plane, settings)
 
 
 def _another(points: NDArray[np.float64], plane: Plane, pose: CameraPose, settings: DetectionSettings) -> Plane | None:

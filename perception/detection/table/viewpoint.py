@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.quantiles import percentiles
 from deixis.perception.detection.settings import DetectionSettings, ViewpointSettings
-from deixis.perception.detection.table.plane import CameraPose, Plane, coordinates
+from deixis.perception.detection.table.plane import CameraPose, Plane
+from deixis.reasoning.geometry.coordinates import coordinates
 
 _Kind = TypeVar("_Kind", bound=np.generic)
 
@@ -55,7 +57,7 @@ class View:
         View
             View of the chosen points from an equal viewpoint.
         """
-        return replace(self, points=self.points[chosen], places=self.places[chosen])
+        return replace(self, points=self.points.take(chosen, axis=0), places=self.places[chosen])
 
     def labelled(self, labels: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return labels in which each left-out point has the label of the point that replaces it.
@@ -157,7 +159,10 @@ def _without_empty_lines(image: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return an image (r, c, 3) without rows and columns that have no depth; some cameras leave lines out."""
     there = np.isfinite(image[..., 2])
     rows, columns = there.any(axis=1), there.any(axis=0)
-    return image if rows.all() and columns.all() else image[rows][:, columns]
+    for axis, lines in enumerate((rows, columns)):
+        if not lines.all():
+            image = image.take(np.flatnonzero(lines), axis)
+    return image
 
 
 def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], settings: ViewpointSettings) -> NDArray[np.float64]:
@@ -199,9 +204,8 @@ def _best_camera(image: NDArray[np.float32], eye: NDArray[np.float64], settings:
     The result is None for too few points. The camera is fitted by the direct linear transformation (Abdel-Aziz and
     Karara, Direct linear transformation from comparator coordinates, 1971).
     """
-    row, column = np.nonzero(np.isfinite(image[..., 2]))
-    few = slice(None, None, max(1, len(row) // settings.pinhole_sample_size))
-    row, column = row[few], column[few]
+    seen = np.flatnonzero(np.isfinite(image[..., 2]))
+    row, column = np.divmod(seen[:: max(1, len(seen) // settings.pinhole_sample_size)], image.shape[1])
     if len(row) < 10 or not np.ptp(row) or not np.ptp(column):
         return None
     size = float(max(image.shape[:2]))
@@ -251,6 +255,27 @@ def verified_pose(pose: CameraPose, points: NDArray[np.float64], settings: Detec
     return CameraPose(above, upwards=pose.upwards, known=False)
 
 
+def is_sure(pose: CameraPose, plane: Plane, settings: DetectionSettings) -> bool:
+    """Return True if the viewpoint is that of an image, which was checked, and above the table.
+
+    Parameters
+    ----------
+    pose
+        Viewpoint of the points.
+    plane
+        Plane of the table.
+    settings
+        Minimum height of the viewpoint above the table.
+
+    Returns
+    -------
+    bool
+        False if the points around the table must tell whether the viewpoint is plausible.
+    """
+    above = plane.heights(pose.eye[None])[0] > settings.viewpoint.min_eye_height
+    return bool(pose.known and pose.up is not None and above)
+
+
 def likeliest_pose(
     pose: CameraPose, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings
 ) -> CameraPose:
@@ -274,10 +299,12 @@ def likeliest_pose(
     CameraPose
         The given pose, or an assumed one above the table.
     """
+    if is_sure(pose, plane, settings):
+        return pose
     limits = settings.viewpoint
     few, far_share = sampled(points, settings), float(np.inf)
     if pose.known and plane.heights(pose.eye[None])[0] > limits.min_eye_height:
-        far_share = 0.0 if pose.up is not None else apart(few, pose.eye, limits)
+        far_share = apart(few, pose.eye, limits)
         if far_share < limits.doubtful_far_share:
             return pose
     on = few[np.abs(plane.heights(few)) < settings.plane.table_band]
@@ -434,7 +461,7 @@ def table_frame(
     away = _across(up, directions)
     turn = np.stack([np.cross(away, up), away, up])
     if known is None:
-        middle = np.percentile(coordinates(on, turn[:2]), (0.5, 99.5), axis=0).mean(axis=0)
+        middle = percentiles(coordinates(on, turn[:2]), (0.5, 99.5)).mean(axis=0)
     else:
         middle = turn[:2] @ (-known[:3, :3].T @ known[:3, 3])
     frame = np.eye(4)

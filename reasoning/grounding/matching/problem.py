@@ -152,7 +152,7 @@ class Problem:
                 f"got {assignment.tolist()!r:.60}"
             )
         objects = np.flatnonzero(assignment != UNMATCHED)
-        if len(np.unique(assignment[objects])) != len(objects):
+        if len(set(assignment[objects].tolist())) != len(objects):
             raise MatchingError(f"a map must give each thing to one object only, got {assignment.tolist()!r:.60}")
         if not self.allowed[objects, assignment[objects]].all():
             raise MatchingError("a map must not make a match that `allowed` rules out")

@@ -9,8 +9,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from deixis.perception.detection.kernels import grow, meetings, planes, planes_in_image
-from deixis.perception.detection.segmentation.neighbours import neighbour_table
 from deixis.perception.detection.settings import SurfaceSettings
+from deixis.perception.detection.table.neighbours import neighbour_table
 
 
 @pytest.mark.parametrize("count", [3, 100])

@@ -15,6 +15,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import detect
 from deixis.perception.detection.left_out import odd_sizes
 from deixis.perception.detection.settings import DetectionSettings, NoteSettings
+from deixis.perception.detection.shown import Shows
 
 Look = Callable[..., PointCloud]
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
@@ -64,6 +65,32 @@ def test_scattered_pixels_without_depth_get_a_note(boxes_seen: Look) -> None:
     points[np.random.default_rng(0).random(len(points)) < 0.5] = np.nan
     notes = detect(replace(cloud, points=points)).notes
     assert any("of the pixels on the table have no depth" in note for note in notes)
+
+
+@pytest.mark.parametrize("where", [(1e6, 1e6, 1e6), (-1e6, -1e6, 1e6), (0.0, 0.0, 65.535), (0.0, -60.0, 1.0)])
+@pytest.mark.parametrize("organised", [True, False])
+def test_points_far_from_the_others_are_left_out_and_noted(
+    boxes_seen: Look, where: tuple[float, float, float], organised: bool
+) -> None:
+    cloud = boxes_seen([CUBE])
+    points = cloud.points.copy()
+    far = np.random.default_rng(0).choice(np.flatnonzero(cloud.finite), 30, replace=False)
+    points[far] = where
+    changed = replace(cloud, points=points)
+    found = detect(changed if organised else changed.take(changed.finite))
+    assert "30 points more than 50 m from the middle of the cloud were left out" in found.notes[-1]
+    assert len(found.boxes) == 1 and np.abs(found.boxes).max() < 1
+    assert (found.labels[far if organised else np.isin(np.flatnonzero(changed.finite), far)] == -1).all()
+
+
+def test_a_far_point_is_not_a_part_of_a_single_object() -> None:
+    side = np.linspace(0, 0.1, 40)
+    x, y = (axis.ravel() for axis in np.meshgrid(side, side))
+    points = np.stack([x, y, 1 + x * y], axis=1).astype(np.float32)
+    points[7] = 1e6
+    found = detect(PointCloud(points))
+    assert found.shows == Shows.OBJECT and found.labels[7] == -1 and np.abs(found.boxes).max() < 1
+    assert found.notes[-1].startswith("one point more than 50 m from the middle of the cloud was left out")
 
 
 @pytest.mark.parametrize(("axis", "name"), [(0, "rows"), (1, "columns")])

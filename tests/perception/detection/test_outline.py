@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.perception.detection.outline import circle_around, oriented_box, rim_of, upright_box
+from deixis.perception.detection.outline import Circle, circle_around, corners_of, oriented_box, rim_of, upright_box
 from deixis.perception.detection.settings import OutlineSettings
 
 LIMITS = OutlineSettings()
@@ -54,9 +54,13 @@ def _crescent(below: float) -> NDArray[np.float64]:
     return disc[disc[:, 1] < below]
 
 
+def _rim(plan: NDArray[np.float64], table: NDArray[np.float64]) -> Circle | None:
+    return rim_of(plan, corners_of(plan), table, LIMITS)
+
+
 @pytest.mark.parametrize("below", [-0.05, 0.0, 0.08])
 def test_the_rim_of_a_plate_continues_behind_an_object(below: float) -> None:
-    rim = rim_of(_crescent(below) + np.array([0.3, 0.1]), NO_TABLE, LIMITS)
+    rim = _rim(_crescent(below) + np.array([0.3, 0.1]), NO_TABLE)
     assert rim is not None
     assert rim.centre == pytest.approx([0.3, 0.1], abs=0.003)
     assert rim.radius == pytest.approx(0.12, abs=0.003)
@@ -64,7 +68,7 @@ def test_the_rim_of_a_plate_continues_behind_an_object(below: float) -> None:
 
 def test_a_box_at_any_yaw_includes_the_hidden_part_of_a_rim() -> None:
     plan = _crescent(-0.03) + np.array([0.2, 0.3])
-    points, rim = np.column_stack([plan, np.full(len(plan), 0.02)]), rim_of(plan, NO_TABLE, LIMITS)
+    points, rim = np.column_stack([plan, np.full(len(plan), 0.02)]), _rim(plan, NO_TABLE)
     assert upright_box(points, LIMITS, rim)[:, :2] == pytest.approx(np.array([[0.08, 0.18], [0.32, 0.42]]), abs=0.004)
     turned = oriented_box(points, LIMITS, rim)
     assert turned.centre[:2] == pytest.approx([0.2, 0.3], abs=0.004)
@@ -74,8 +78,8 @@ def test_a_box_at_any_yaw_includes_the_hidden_part_of_a_rim() -> None:
 def test_a_rim_does_not_continue_over_the_visible_table() -> None:
     crescent = _crescent(-0.03)
     behind = _disc(0.12)[_disc(0.12)[:, 1] > 0.02]
-    assert rim_of(crescent, behind, LIMITS) is None
-    assert rim_of(crescent, behind + np.array([0.0, 0.3]), LIMITS) is not None
+    assert _rim(crescent, behind) is None
+    assert _rim(crescent, behind + np.array([0.0, 0.3])) is not None
 
 
 @pytest.mark.parametrize(
@@ -91,14 +95,14 @@ def test_a_rim_does_not_continue_over_the_visible_table() -> None:
     ids=["too little of an edge", "a spoon", "a strip of a plate", "a napkin", "points in a line", "a round table"],
 )
 def test_a_doubtfully_round_object_has_no_rim(seen: NDArray[np.float64]) -> None:
-    assert rim_of(seen, NO_TABLE, LIMITS) is None
+    assert _rim(seen, NO_TABLE) is None
 
 
 def test_a_circle_is_found_at_any_place_and_yaw() -> None:
     rng, turn = np.random.default_rng(0), 0.7
     axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     plan = _disc(0.08) + rng.normal(size=2)
-    there, here = (circle_around(places, LIMITS.rim_tolerance) for places in (plan @ axes.T, plan))
+    there, here = (circle_around(corners_of(places), LIMITS.rim_tolerance) for places in (plan @ axes.T, plan))
     assert there is not None and here is not None
     assert there.centre == pytest.approx(here.turned(axes).centre, abs=1e-6)
     assert there.radius == pytest.approx(here.radius, abs=1e-6)

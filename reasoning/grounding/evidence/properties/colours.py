@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.things.colours import Colour, Colours
+from deixis.reasoning.geometry.coordinates import coordinates
 
 Array = NDArray[np.float64]
 
@@ -55,7 +56,7 @@ def lab_of_srgb(rgb: NDArray[np.float64] | NDArray[np.uint8]) -> Array:
         linear = _linear(np.arange(256.0))[np.asarray(rgb, np.uint8)]
     else:
         linear = _linear(np.asarray(rgb, dtype=np.float64))
-    xyz = linear @ TO_XYZ.T / TO_XYZ.sum(axis=1)
+    xyz = coordinates(linear.reshape(-1, 3), TO_XYZ).reshape(linear.shape) / TO_XYZ.sum(axis=1)
     limit = 6 / 29
     f = np.where(xyz > limit**3, np.cbrt(xyz), xyz / (3 * limit**2) + 4 / 29)
     lab: Array = np.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1)

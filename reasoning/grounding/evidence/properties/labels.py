@@ -119,7 +119,7 @@ def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Ki
     by_name = named & fitting
     narrower = fitting & ~named
     found = np.zeros_like(narrower)
-    for level in np.unique(sureness[narrower.any(axis=0)]):
+    for level in sorted(set(sureness[narrower.any(axis=0)].tolist())):
         claims, at_level = by_name & (sureness >= level), sureness == level
         spare = spare_rows(claims)[:, None] & spare_rows(claims.T)[None, :]
         found[:, at_level] = (narrower & spare)[:, at_level]

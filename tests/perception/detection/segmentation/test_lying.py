@@ -5,9 +5,9 @@ import pytest
 from numpy.typing import NDArray
 
 from deixis.perception.detection.segmentation.lying import with_lying_things
-from deixis.perception.detection.segmentation.neighbours import neighbour_table
 from deixis.perception.detection.segmentation.surface import Surface, surface_of
 from deixis.perception.detection.settings import DetectionSettings, SurfaceSettings
+from deixis.perception.detection.table.neighbours import neighbour_table
 
 SIDE = 90
 CREAM, STEEL = (235, 225, 210), (140, 145, 155)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.detect import segments
 from deixis.perception.detection.segmentation.boundaries import Boundaries, agglomerated, boundaries, creases
-from deixis.perception.detection.segmentation.neighbours import neighbour_table
 from deixis.perception.detection.segmentation.supervoxels import supervoxels
 from deixis.perception.detection.segmentation.surface import Surface, surface_of
 from deixis.perception.detection.settings import (
@@ -19,6 +18,7 @@ from deixis.perception.detection.settings import (
     SupervoxelSettings,
     SurfaceSettings,
 )
+from deixis.perception.detection.table.neighbours import neighbour_table
 
 SIDE = 60
 EYE = np.array([0.06, 0.06, 0.8])

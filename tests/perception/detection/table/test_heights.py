@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from deixis.perception.detection.segmentation.neighbours import neighbour_table
 from deixis.perception.detection.settings import DetectionSettings, SurfaceSettings
 from deixis.perception.detection.table.heights import raised
+from deixis.perception.detection.table.neighbours import ListedNeighbours, neighbour_table
 
 ROWS, COLUMNS = 60, 80
 
@@ -21,7 +21,7 @@ def test_a_strip_of_a_few_millimetres_is_kept_without_the_table(noise: float) ->
     neighbours = neighbour_table(
         np.zeros((ROWS * COLUMNS, 3)), np.arange(ROWS * COLUMNS), (ROWS, COLUMNS), SurfaceSettings()
     )
-    found = raised(heights.ravel(), np.full(ROWS * COLUMNS, 1.0), neighbours, DetectionSettings())
+    found = raised(heights.ravel(), np.full(ROWS * COLUMNS, 1.0), ListedNeighbours(neighbours), DetectionSettings())
     above = found.above.reshape(ROWS, COLUMNS)
     assert above[strip].mean() > 0.97
     away = np.ones_like(strip)
@@ -35,5 +35,5 @@ def test_low_points_count_if_connected_to_high_ones() -> None:
     heights[5:10], heights[10:15], heights[22:26] = 0.01, 0.0012, 0.0012
     line = np.full((30, 2), -1, np.int32)
     line[1:, 0], line[:-1, 1] = np.arange(29), np.arange(1, 30)
-    above = raised(heights, np.full(30, 0.5), line, DetectionSettings()).above
+    above = raised(heights, np.full(30, 0.5), ListedNeighbours(line), DetectionSettings()).above
     assert above[5:14].all() and not above[20:].any()

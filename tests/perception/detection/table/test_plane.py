@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.table.plane import CameraPose, Plane, coordinates, refined, table_plane
+from deixis.perception.detection.table.plane import CameraPose, Plane, refined, table_plane
 
 
 def _turn(seed: int) -> NDArray[np.float64]:
@@ -20,14 +20,6 @@ def _turn(seed: int) -> NDArray[np.float64]:
 
 def _table(rng: np.random.Generator, count: int = 4000, noise: float = 0.002) -> NDArray[np.float64]:
     return np.column_stack([rng.uniform(-0.5, 0.5, (count, 2)), rng.normal(0, noise, count)])
-
-
-@pytest.mark.parametrize("count", [0, 1, 4096, 10_001])
-@pytest.mark.parametrize("shape", [(3,), (2, 3), (8, 3)])
-def test_coordinates_are_products_with_the_axes(count: int, shape: tuple[int, ...]) -> None:
-    rng = np.random.default_rng(0)
-    points, axes = rng.normal(size=(count, 3)), rng.normal(size=shape)
-    np.testing.assert_allclose(coordinates(points, axes), points @ axes.T, atol=1e-12)
 
 
 @settings(max_examples=15, deadline=None)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect
-from deixis.perception.detection.segmentation.neighbours import neighbour_table
 from deixis.perception.detection.settings import DetectionSettings, SurfaceSettings, ViewpointSettings
+from deixis.perception.detection.table.neighbours import neighbour_table
 from deixis.perception.detection.table.viewpoint import apart, camera_pose_of
 from deixis.perception.errors import CloudError
 
