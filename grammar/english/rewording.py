@@ -493,7 +493,7 @@ _DRYING = word_set("dry cool drain soak air-dry")
 def _without_and_such(words: list[Word]) -> None:
     """Read *plates and cups and such* without *and such*."""
     for i in range(len(words) - 2, 1, -1):
-        last = i + 2 == len(words) or not words[i + 2].is_word
+        last = i + 2 >= len(words) or not words[i + 2].is_word
         if [word.norm for word in words[i : i + 2]] in (["and", "such"], ["and", "so"], ["or", "so"]) and last:
             del words[i : i + 2]
 

@@ -146,6 +146,7 @@ def test_any_text(text: str) -> None:
 @example("n't")
 @example("stands you left the")
 @example("a cup ) beyond the plate, its handle towards the empty chair")
+@example("the the the and so")
 def test_any_words(text: str) -> None:
     check(text)
 
