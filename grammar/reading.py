@@ -45,6 +45,12 @@ class StatedFact:
         """True if the text states that the fact holds now, without a condition."""
         return not (self.condition or self.past or self.uncertain)
 
+    @property
+    def reservations(self) -> tuple[str, ...]:
+        """Reasons why the fact is not asserted: ``past``, ``uncertain`` and the words of its condition."""
+        marks = [name for name in ("past", "uncertain") if getattr(self, name)]
+        return (*marks, self.condition) if self.condition else tuple(marks)
+
 
 @dataclass(frozen=True, slots=True)
 class ReadSentence:

@@ -112,10 +112,11 @@ def _script_of(text: str, file: str, ontology: Ontology, discourse: Discourse, d
     asserted = joined_choices([fact for fact in stated if fact.asserted])
     statements = [statement for fact in asserted for statement in writer.statements(fact, reading)]
     surface = None if reading.surface in writer.names.values() else reading.surface
-    if surface is not None:
-        statements.insert(0, Header(None, None, None, Source(file, 1, 1, 1, 1), surface))
+    viewpoint = None if discourse.seen_from is None else discourse.seen_from.replace(" ", "_")
+    if surface is not None or viewpoint is not None:
+        statements.insert(0, Header(None, None, viewpoint, Source(file, 1, 1, 1, 1), surface))
     comments = tuple(writer.comments(reading))
-    return Script(file, None, None, None, tuple(statements), comments, ontology, reading, surface)
+    return Script(file, None, None, viewpoint, tuple(statements), comments, ontology, reading, surface)
 
 
 def _nothing_understood(text: str, file: str, reading: Reading, writer: _Writer) -> tuple[Diagnostic, ...]:

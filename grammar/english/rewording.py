@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+from deixis.grammar.english.tagging.word_classes import closed_words
 from deixis.grammar.english.tokens import Word, cut_words
 from deixis.grammar.english.tree import Degree, Span
-from deixis.grammar.english.vocabulary.adjectives import QUALITIES, degree_of, is_adjective
+from deixis.grammar.english.vocabulary.adjectives import QUALITIES, adjectives, degree_of, is_adjective
 from deixis.grammar.english.vocabulary.function_words import (
     ADVERBS,
     DETERMINERS,
@@ -43,6 +44,7 @@ _DENIALS = {
     ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
     ("has", "become"): "became", ("have", "become"): "became",
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
+    ("as", "well", "as"): "and",
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
     ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("nowhere", "to", "be"): "not",
@@ -159,7 +161,7 @@ def _read_ranges(words: list[Word]) -> None:
 
 
 def _without_dimensions(words: list[Word]) -> None:
-    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot board*."""
+    """Leave out the dimensions before the name of a thing: *a 3' x 4' rug*, *a 3-foot by 4-foot rug*, *a 2cm nail*."""
     i = 0
     while i < len(words) - 1:
         end = i + 1
@@ -175,9 +177,34 @@ def _without_dimensions(words: list[Word]) -> None:
         named = end < len(words) and words[end].norm.isalpha() and words[end].norm not in prepositions()
         if several and named and (i == 0 or words[i - 1].norm in DETERMINERS | POSSESSIVES.keys() | NUMBERS.keys()):
             del words[i:end]
+        elif _measures_a_thing(words, i):
+            del words[i : i + 2]
         i += 1
 
 
+def _measures_a_thing(words: list[Word], at: int) -> bool:
+    """Return True for a length or a capacity before the name of a thing: *a 25mm pipe*, *two 500 ml flasks*."""
+    norms = [word.norm for word in words[at : at + 4]] + [""] * 4
+    if not norms[0].replace(".", "", 1).isdecimal() or norms[1] not in _UNITS_OF_THINGS or not norms[2].isalpha():
+        return False
+    glued = words[at].end == words[at + 1].start
+    if not glued and (at == 0 or words[at - 1].norm not in DETERMINERS | POSSESSIVES.keys() | NUMBERS.keys()):
+        return False  # 'leave 3 cm space'
+    if is_adjective(norms[2]) and norms[2] not in _EXTENTS:
+        return norms[3].isalpha() and norms[3] not in closed_words()
+    return norms[2] not in closed_words() | _EXTENTS | DIRECTION_WORDS | UNITS.keys()
+
+
+_UNITS_OF_THINGS = word_set(
+    "mm cm m inch in ft foot yard yd ml cl dl l litre liter oz ounce g mg kg lb gallon quart pint cup watt w volt v"
+    " \u03bcl ul hz khz kw amp second minute hour day week month year page"
+)
+"""Units of the measures that stand before the name of a thing, in the singular."""
+_EXTENTS = word_set(
+    "long wide high tall deep thick broad apart away gap space margin distance clearance overlap overhang drop border"
+    " interval strip allowance"
+)
+"""Words after a length that is not the measure of a thing."""
 _NUMBER_OF_DIMENSION = re.compile(r"\d+(?:\.\d+)?(?:-[a-z]+)?")
 _SECOND_DIMENSION = re.compile(r"x\d+")
 
@@ -270,6 +297,22 @@ def _without_settings(words: list[Word]) -> None:
         del words[: after if named else 0]
 
 
+def _read_viewpoint(words: list[Word]) -> None:
+    """Read *the bench is seen from the stool* as *seen from the stool*, which says nothing about the bench."""
+    norms = [word.norm for word in words]
+    seen = next((i for i in range(len(norms) - 1) if norms[i] in _SEEN and norms[i + 1] in ("from", "by")), 0)
+    before = [norm for norm in norms[:seen] if norm not in _MEANT]
+    if before and before[-1] in IS_FORMS and len(before) <= MAX_ASIDE_WORDS and not _UNMEANT & set(norms[:-1]):
+        del words[:seen]
+
+
+_SEEN = frozenset({"seen", "viewed"})
+_MEANT = frozenset({"all", "always", "as", "described", "given", "here", "meant", "stated", "taken"})
+"""Words that may stand between a form of *be* and *seen from*."""
+_UNMEANT = frozenset({",", "not", *MODALS})
+"""Words of sentences that say more, or from where something can be seen."""
+
+
 def _read_facing_commands(words: list[Word]) -> None:
     """Read *face the sofa toward the window* as *turn the sofa toward the window*."""
     start = next((i for i, word in enumerate(words) if word.norm not in ADVERBS | HEDGES), 0)
@@ -340,6 +383,8 @@ def _deny_contrasts(words: list[Word]) -> None:
     for i in range(len(words) - 2, -1, -1):
         for length in range(min(4, len(words) - i), 0, -1):
             plain = _DENIALS.get(tuple(word.norm for word in words[i : i + length]))
+            if plain == "and" and i and words[i - 1].norm == ",":
+                continue  # 'behind the jug, as well as the pan' can be about both
             if plain is not None and (i + length == len(words) or words[i + length].norm != "than"):
                 first, *others = plain.split()
                 words[i].norm = first
@@ -397,6 +442,9 @@ def _deny_contrasts(words: list[Word]) -> None:
             del words[i : end + (words[i - 1].norm == ",")]  # 'on the mat, rather than the fork, put the spoon'
         else:
             words[i].norm, words[i + 1].norm = ",", "not"
+            quality = i + 3 < len(words) and adjectives().get(words[i + 2].norm, "position") != "position"
+            if quality and words[i + 3].norm in prepositions():
+                del words[i + 2]  # 'on battens rather than flat against the wall'
 
 
 def _without_inserted_adverbs(words: list[Word]) -> None:
@@ -702,6 +750,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _read_setups(found)
     _without_asides_in_verbs(found)
     _without_settings(found)
+    _read_viewpoint(found)
     _read_facing_commands(found)
     _read_fractions(found)
     _without_cleft(found)

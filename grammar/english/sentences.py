@@ -30,6 +30,12 @@ _STEP = re.compile(
     re.I,
 )
 _BARE_STEP = re.compile(r"[ \t]*(\d{1,2})[ \t]+(?=([A-Za-z]+))")
+MIN_ITEMS = 4
+"""Minimum number of lines of a list without marks."""
+MIN_SHARE_OF_ITEMS = 0.8
+"""Minimum share of the lines of such a list that begin with a capital letter."""
+MAX_BLOCK = 2000
+"""Number of characters around a line end in which the lines of such a list are counted."""
 MAX_ITEM = 500
 """Number of characters in which the next item of a numbered list begins."""
 
@@ -129,6 +135,8 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
                 return match.end(), _is_heading(line)
             if "\n" not in line and following[:1].isupper() and len(line) < 60 and not line.rstrip().endswith(","):
                 return match.end(), False
+            if following[:1].isupper() and _is_line_of_items(text, match.start()):
+                return match.end(), False
             continue
         if (
             mark == "."
@@ -146,6 +154,16 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
                 continue
         return match.end(), False
     return len(text), _is_heading(text[start:])
+
+
+def _is_line_of_items(text: str, at: int) -> bool:
+    """Return True if the lines around a line end are items without marks: most have a capital and no full stop."""
+    first, last = text.rfind("\n\n", 0, at) + 1, text.find("\n\n", at)
+    block = text[max(first, at - MAX_BLOCK) : min(last if last >= 0 else len(text), at + MAX_BLOCK)]
+    lines = [line.strip() for line in block.split("\n") if line.strip()]
+    capitals = sum(line[:1].isupper() for line in lines)
+    stops = sum(line[-1:] in ".!?" for line in lines)
+    return len(lines) >= MIN_ITEMS and capitals >= MIN_SHARE_OF_ITEMS * len(lines) and stops <= len(lines) / 2
 
 
 def _is_heading(line: str) -> bool:

@@ -30,12 +30,12 @@ from deixis.errors import DeixisError
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, shortened
 from deixis.grammar.files import read_text
 from deixis.ontology.graph.graph import Source
-from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import CalculusError
 from deixis.reasoning.qualitative.calculi.calculus import MAX_TABLE_ATOMS, Calculus, Subclass, TableCalculus
 from deixis.reasoning.qualitative.calculi.laws import Violation, lawful
 from deixis.reasoning.qualitative.calculi.registry import with_same_tables
 from deixis.reasoning.qualitative.calculi.words import words_with
+from deixis.spelling import nearest
 
 MAX_SUBCLASS_ATOMS = 16  # maximum number of atoms of a calculus whose tractable relations are listed
 KEYS = ("comp_table_file", "converse_file", "identity", "calculus_size")

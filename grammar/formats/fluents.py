@@ -10,7 +10,6 @@ import json
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +28,7 @@ from deixis.reasoning.temporal.fluent import (
     Statement,
     TemporalRelation,
 )
+from deixis.spelling import nearest
 from deixis.text_files import is_folder
 
 UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
@@ -237,8 +237,8 @@ def _known(data: Any, where: str, names: Collection[str], kind: str) -> str:
 
 
 def _suggestion(name: str, names: Collection[str]) -> str:
-    close = get_close_matches(name[:100], list(names), n=1)
-    return f"did you mean '{shortened(close[0])}'?; " if close else ""
+    near = nearest(name, names)
+    return f"did you mean '{shortened(near)}'?; " if near else ""
 
 
 def format_fluents(content: FluentFile) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from difflib import SequenceMatcher
 
@@ -116,6 +117,9 @@ def unexpected(tokens: list[Token], at: int, accepts: set[str], draft: Draft) ->
         return StatementError(source_of(token), f"'{token}' is not expected here", QUOTE_HINT)
     if token.type == "_LPAR" and at == 1 and tokens[0].type == "NAME" and any(t.type == "_COMMA" for t in tokens):
         return _unknown_relation(tokens[0], draft)
+    if "RELATION" in accepts and (distance := _WITHOUT_UNIT.match(" ".join(tokens[at : at + 4]))) is not None:
+        message = f"the distance '{shortened(distance[0])}' has no unit"
+        return StatementError(source_of(token), message, f"write, for example, {distance[1]} cm from")
     if token.type == "FUNCTION" or (token.type in NAMES and at and tokens[at - 1].type in NAMES):
         return _missing_relation(tokens, at, accepts, draft)
     return _unexpected_token(tokens, at, accepts)
@@ -195,6 +199,10 @@ def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Dr
         hint = hint or f"if it belongs to a name, write {shortened('_'.join(parts))} or quote the name"
         return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", hint)
     return StatementError(source_of(token), _no_bare_name(shown), hint)
+
+
+_WITHOUT_UNIT = re.compile(r"(?:[a-z ]+ )?(\d+(?:\.\d+)?)(?= (?:from|away)\b)")
+"""A distance without its unit: *about 5 from*."""
 
 
 def _relation_of_verb(token: Token, draft: Draft) -> str | None:

@@ -13,10 +13,11 @@ from deixis.grammar.layout.words import chains
 from deixis.grammar.script import Mention
 from deixis.ontology.graph.facts import Source
 from deixis.ontology.inflection import singulars
-from deixis.ontology.relations.relation import Relation, nearest, plain_phrase
+from deixis.ontology.relations.relation import Relation, plain_phrase
 from deixis.ontology.tbox import Ontology
 from deixis.ontology.things.colours import Colour
 from deixis.ontology.things.kinds import Kind, with_article
+from deixis.spelling import nearest
 
 MAX_FACTS = 1_000_000  # maximum number of facts in a script, its includes counted
 MAX_COMPARED_CHARACTERS = 40  # maximum length in characters of a word for which the nearest known word is searched

@@ -140,6 +140,8 @@ _REWORDED = tuple(
         (r"^(?:who (?:was|is) it (?:who|that)|wh(?:ich|at) (?:person|one of (?:us|them))|whose hand)\b", "who"),
         (rf"^who (?:has|have|had|is|was)(?: just| been)* (?={_VERB}\b)", "who "),
         (rf"^who (?:is|was) responsible for (?={_VERB}\b)", "who "),
+        (r"^(?:was|is) it [\w' -]+? or [\w' -]+? (?:who|that)\b", "who"),
+        (rf"^how many (?:people|persons) (?:has |have )?(?={_VERB}\b)", "who "),
         (rf"^(?:was|is) it ((?:the |my )?[\w'-]+) (?:who|that) (?:has |have )?(?={_VERB}\b)", r"did \1 "),
         (rf"^when did (?:any|some) ?(?:one|body) (first|last) ({_VERB}) (.+)$", r"who \2 \3 \1"),
         (rf"^did (?!you\b)[\w ]+? ({_VERB}) (.+) or did [\w ]+$", r"who \1 \2"),
@@ -147,6 +149,7 @@ _REWORDED = tuple(
         (rf"^(?:when|where) (?:was|were|has|have) (.+?)( first| last)?(?: been)? ({ACT_PATTERN}) by whom$",
          r"who \3 \1\2"),
         (rf"^who was the (first|last)(?: one| person)? (?:to|who|that) ({_VERB}) (.+)$", r"who \2 \3 \1"),
+        (rf"^(who|what|which (?:\w+ )*?\w+) (first|last) ({_VERB}) (.+)$", r"\1 \3 \4 \2"),
         (rf"^what (?:is|was|were) the (first|last) (?:thing|one|object)s? (?:that )?"
          rf"(?!that |was |were |has |have )((?:\w+ )+?)({ACT_PATTERN})",
          r"what did \2\3 \1"),
@@ -158,7 +161,13 @@ _REWORDED = tuple(
         (rf"^what (?:was|were|has been|have been) ({ACT_PATTERN}) by whom$", r"who \1 something"),
         (rf"^(who (?:{_VERB}) .+?) where (?:it|they) (?:is|are)(?: now)?$", r"\1 last"),
         (r"^what (?:did|have|has) (?:you see )?(.+?) (?:do|done) (?:to|with) (.+)", r"did \1 handle \2"),
-        (r"^what (?:did|have|has) (?:you see )?(.+?) (?:do|done)\b", r"what did \1 handle"),
+        (r"^what (?:did|have|has|had) (?:you see )?(.+?) (?:do|done)\b", r"what did \1 handle"),
+        (r"^what (?:is|was|were|are) (.+?) doing\b", r"what did \1 handle"),
+        (r"^how often (?:was|were|has|have) (.+?) (?:been )?(?:touched|handled)\b", r"how often did anyone handle \1"),
+        (r"^(?:is|are) (.+?) (?:still )?where (.+?) (?:put|laid|placed|left) (?:it|them)$", r"where did \2 put \1"),
+        (r"^what (?:is|was|were) the (first|last) things? (?:that )?(.+?) (?:did|has done)$", r"what did \2 handle \1"),
+        (r"^who did (?:what|(?:any|some)thing)\b", "who handled something"),
+        (rf"^(where did .+? {_VERB} .+) to$", r"\1"),
         (rf"\b(was|were|been) (.+?) (first|last) ({ACT_PATTERN})$", r"\1 \2 \4 \3"),
         (rf"^by (?P<asked>who)m? (?:was|were|has|have) (?P<thing>.+?) (?:been )?(?P<verb>{ACT_PATTERN})(?P<person>)",
          _active),
@@ -167,7 +176,8 @@ _REWORDED = tuple(
         (rf"^(?P<asked>what|which (?:\w+ )*?\w+|when|how often)? ?\b(?:was|were|has|have) "
          rf"(?P<thing>(?:\w+ )*?)(?:been )?(?P<verb>{ACT_PATTERN}) "
          rf"by (?!noon|midnight|now|then|\d)(?P<person>.+?){_WHEN}", _active),
-        (rf"^(what |which (?:\w+ )+?|how many (?:\w+ )+?|)(?:has|have) (?!been\b)((?:\w+ )+?)(?<!been )"
+        (rf"^(what |which (?:\w+ )+?|how many (?:\w+ )+?|)(?:has|have) (?!(?:been|changed|"
+         rf"happened)\b)((?:\w+ )+?)(?<!been )"
          rf"(?=(?:{_VERB})\b)", r"\1did \2"),
         (rf"\b({_VERB}) ({_THING}(?: (?!{_PARTICLE}\b)[\w'-]+)*?) ({_PARTICLE})\b", r"\1 \3 \2"),
         (rf"\b({_VERB}) (?:just |already |actually |really )+", r"\1 "),

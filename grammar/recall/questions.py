@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.resources import files
 from typing import Any
@@ -20,7 +20,8 @@ from lark.exceptions import UnexpectedInput
 
 from deixis.errors import DeixisError
 from deixis.grammar.layout.words import phrase_pattern
-from deixis.grammar.recall.acts import act_terminals, acts_of, reworded
+from deixis.grammar.recall.acts import act_terminals, acts_of
+from deixis.grammar.recall.rewording import plain_question
 from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import Ontology, default_ontology
 
@@ -100,121 +101,19 @@ WORDINGS = (
     "what did Ada tell you?",
     "what have you not seen yet?",
     "what do you expect?",
+    "what is t4?",
+    "is t4 a fork?",
+    "which one is the fork?",
+    "what layout is this?",
+    "what was wrong at noon?",
+    "what was never moved?",
+    "what was there the whole time?",
+    "which came first, the fork or the cup?",
+    "how long ago was the cup taken away?",
+    "what colour is the ball?",
 )
 """Wordings of all kinds of questions; a question that is not understood is answered with the nearest ones."""
 
-_NUMBERS = {
-    name: str(number)
-    for number, name in enumerate(("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), 1)
-} | {"a": "1", "an": "1", "half an": "0.5"}
-_NUMBER_WORDS = "|".join(sorted(_NUMBERS, key=len, reverse=True))
-_COUNTED = re.compile(rf"\b({_NUMBER_WORDS}) (?=(?:second|minute|hour|day|week)s?\b)")
-
-_HERE = r"(?:here|there|around|present|at (?:the|this|my|our) (?:table|desk)|in (?:the|this|my|our) (?:room|kitchen))"
-_ANYONE = r"(?:(?:any|some) ?(?:one|body)|people)"
-_REWORDED = tuple(
-    (re.compile(pattern), wording)
-    for pattern, wording in (
-        (r"^where (?:had|has|have) (.+?) been\b", r"where was \1"),
-        (r"^where (?:is|are|has|have) (.+?) (?:gone|went)\b(?: to\b)?", r"where did \1 go"),
-        (r"^(?:since when|how long) (?:is|are|was|were|has|have) (.+?) (?:been )?where (?:it is|they are)(?: now)?$",
-         r"where is \1"),
-        (rf"^who is (?:now )?{_HERE}(?: (?:right )?now)?$", "who was there in the last 1 minute"),
-        (rf"^who (?:was|were|has been|have been)(?: (?:just|still))? {_HERE}\b", "who was there"),
-        (r"^(?:whom?|which (?:people|persons)) (?:did|have) you (?:see|seen|meet|met|hear|heard)\b", "who was there"),
-        (rf"^(?:was|were|has|have) (?:{_ANYONE})(?: been)? {_HERE}\b", "who was there"),
-        (rf"^how many (?:people|persons) (?:were|are|have been) {_HERE}\b", "how many people were there"),
-        (r"^who (?:came|dropped|stopped)(?: (?:by|in|round|over|along|here))*"
-         r"(?= (?:today|yesterday|since|before|after|at|in|between|this)\b|$)", "who was there"),
-        (rf"^(?:any|some) ?(?:one|body) {_HERE}\b", "who was there"),
-        (rf"^who was the (first|last)(?: one| person)? (?:to be )?{_HERE}$", r"who was there \1"),
-        (r"^(?:was|were|has|have|is|are) ([\w ]+?)(?: still)?(?: ever)?(?: been)? (?:here|around|present)\b",
-         r"was \1 there"),
-        (r"^(what|which [\w ]+?) (?:stood|lay|sat)\b", r"\1 was"),
-        (r"^(where (?:is|are|was|were) .+?) (?:standing|lying|sitting|placed)\b", r"\1"),
-        (r"^what (?:is|was) different(?: now)?\b", "what changed"),
-        (r"^(?:when|how long) (?:was|were|has|have) ([\w ]+?)(?: been)? (?:here|around|present)\b",
-         r"how long was \1 there"),
-        (r"^who (?:spoke|talked|said (?:any|some)thing)(?: to you)?\b", "what did anyone say"),
-        (r"^who did you (?:talk|speak|listen) (?:to|with)\b", "what did anyone say"),
-        (r"^what (?:was|were) the (first|last) (?:thing|sentence|word)s? (?:that )?(.+?) (?:said|told you)\b",
-         r"what did \2 say \1"),
-        (r"^what (?:did|have) you (?:say|said)\b", "what did the robot say"),
-        (r"^what (?:have|did) you (?:ever )?learn(?:ed|t)? from (.+)", r"what did \1 show you"),
-        (r"^what (?:did|has|have) (.+?) (?:teach|taught) you\b", r"what did \1 show you"),
-        (r"^(?:has|have|is|was|were) (.+?) always (?:been )?there\b", r"how long was \1 there"),
-        (r"^did (.+?) (?:always )?(?:stay|remain)(?: (?:where (?:it|they) (?:was|were)|there|in (?:its|their) place))?"
-         r"(?: all the time)?$", r"how long was \1 there"),
-        (r"^(?:since when|how long) (?:is|are|was|were|has|have) (.+?)(?: been)? (?:gone|missing|away)\b",
-         r"when did \1 go"),
-        (r"^where do(?:es)? (.+?) (?:belong|live)\b|^where (?:is|are) (.+?) (?:usually |normally )?(?:kept|stored)\b",
-         lambda found: f"what did anyone say about {found[1] or found[2]}"),
-        (r"^where should (.+?) (?:be (?:put|kept|stored)|be|go|stand|lie)\b", r"what did anyone say about \1"),
-        (r"^where did (.+?) end up\b", r"where did \1 go"),
-        (r"^where (?:is|are) (?:everything|all (?:of )?the (?:things|objects))\b", "what is there"),
-        (r"^(?:what|how) did (?:the|this|my|our) (?:table|desk) look(?: like)?\b", "what was there"),
-        (r"^who (?:told|said)(?: (?:you|us|me|anything|something))* about\b", "what did anyone say about"),
-        (r"^where did (.+?) used? to be\b", r"where was \1 before"),
-        (r"\b(?:has|have) gone\b", "went"),
-        (r"\b(?:has|have) come\b", "came"),
-        (r"\b(?:has|have) (?=(?:left|disappeared|vanished|arrived|appeared|moved)\b)", ""),
-        (r"^what have you been shown\b", "what was shown"),
-        (r"^what (?:(?:was|has been) said|(?:have you been|were you) (?:told|taught)) about\b",
-         "what did anyone say about"),
-        (r"^(?:did|have|has) (.+?) (?:ever )?(?:mention(?:ed)?|talk(?:ed)? about|sa(?:y|id) anything about) ",
-         r"what did \1 say about "),
-        (r"^what do you (?:know|remember) about\b", "what did anyone say about"),
-        (rf"^did {_ANYONE} (?:take|remove|clear)(?: away| off)? (.+?)(?=$| since| before| after| at| in| between)",
-         r"was \1 taken away"),
-        (rf"^what did {_ANYONE} (?:take|clear|remove)(?: away| off)?\b", "what was taken away"),
-        (rf"^did {_ANYONE} (?:move|shift|push)\b (.+?)(?=$| since| before| after| at| in| between)", r"was \1 moved"),
-        (rf"^what did {_ANYONE} move\b", "what was moved"),
-        (rf"^what did {_ANYONE} (?:(?:put|lay|set) down|bring|add)\b", "what was put down"),
-        (r"\b(?:most recently|lastly)\b", "last"),
-        (r"^what (?:is|was) the (first|last|latest) (?:thing|object|one) (?:that |which )?"
-         r"((?:was |has been )?(?:moved|removed|taken away|put down|placed|added|shown)|came|went|appeared|vanished)\b",
-         lambda found: f"what {found[2].replace('has been', 'was')} {found[1]}"),
-        (r"\blatest\b", "last"),
-        (r"^(what (?:came|appeared)) (after|before) ((?:the|an?) (?:(?!came|went|moved|was|were|left)\w+ ?)+)$",
-         r"\1 \2 \3 came"),
-        (r"^what (?:do|can) you see\b", "what is there"),
-        (r"^(what|which [\w ]+?) (?:did|have) you (?:see|seen)\b(?! yet)", r"\1 came"),
-        (r"^(?:did|have) you (?:ever )?(?:see|seen) (.+?)(?=$| since| before| after| at| in| between)", r"did \1 come"),
-        (r"^when did you first see (.+)$", r"when did \1 come first"),
-        (r"^(where|when) (?:have|did) you (?:last (?:see|seen) (.+)|(?:see|seen) (.+) last)$",
-         lambda found: f"{found[1]} did you last see {found[2] or found[3]}"),
-        (r"^when (was|were) (.+) there$", r"how long \1 \2 there"),
-        (r"^(?:has|did) (?:any|some)thing (?:changed?|happen(?:ed)?)\b(?! to)", "what changed"),
-        (r"^(?:has|did) (?:any|some)thing happen(?:ed)? to ", "what happened about "),
-        (r"^what (?:(?:has |had )?(?:happened (?:to|with)|become of)|became of) ", "what happened about "),
-        (r"^what (?:is|has|was) (?:been )?(?:going on|happening)\b|^what went on\b", "what happened"),
-    )
-)  # fmt: skip
-"""Wordings that ask for the same as others, each a pattern and its replacement."""
-
-_HOURS = ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
-_PARTS = {"quarter": 15, "a quarter": 15, "half": 30, "five": 5, "ten": 10, "twenty": 20, "twenty five": 25}
-_SPOKEN = re.compile(
-    rf"\b(?:({'|'.join(sorted(_PARTS, key=len, reverse=True))}) (?:minutes )?(past|to) )?({'|'.join(_HOURS)}|\d{{1,2}})"
-    r"(?: (o'clock|oclock))?\b"
-)
-
-
-def _spoken_time(found: re.Match[str]) -> str:
-    """Return a spoken time of day in digits: *half past eleven* as 11:30; a plain number remains unchanged."""
-    part, side, hour, o_clock = found.groups()
-    if part is None and o_clock is None:
-        return found[0]
-    hours = int(hour) if hour.isdigit() else _HOURS.index(hour) + 1
-    minutes = 60 * hours + (_PARTS[part] * (1 if side == "past" else -1) if part else 0)
-    return f"{minutes // 60}:{minutes % 60:02d}"
-
-
-_PREFACE = (
-    r"^\s*((please|hey|hi|hello|so|now|and|well|ok|okay|excuse me|((can|could|would|will) you (please )?)?tell me|"
-    r"do you (know|remember)|can you remember|i (want|would like|'d like) to know|i wonder)\s+)+"
-)
-"""Words before a question that do not belong to it."""
 
 _ASKS = re.compile(
     r"\s*(?:please |can you |tell me |do you (?:know|remember) )*"
@@ -222,6 +121,9 @@ _ASKS = re.compile(
     re.IGNORECASE,
 )
 """Beginning of a text that may be a question."""
+
+
+_HOW_LONG_AGO = re.compile(r"\bhow long ago\b", re.IGNORECASE)
 
 
 class RecallQuestionError(DeixisError, ValueError):
@@ -245,7 +147,10 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class When:
-    """The time that a question asks about: ``kind`` is a rule of the grammar, with up to two moments."""
+    """The time that a question asks about: ``kind`` is a rule of the grammar, with up to two moments.
+
+    It is ``unstated`` if the question names no time, and ``ever`` if it is then in the past tense.
+    """
 
     kind: str = "unstated"
     moments: tuple[Moment, ...] = ()
@@ -256,9 +161,10 @@ class RecallQuestion:
     """A question about then and now.
 
     ``kind`` is the alternative of the grammar (``where``, ``related``, ``gone``, …), ``thing`` and ``other`` are nouns
-    without articles, ``relation`` is the name of a relation, ``event`` what happened to the thing, ``speaker`` the
-    person named, ``of_asker`` True if the person is the one who asks, and ``order`` ``first`` or ``last``. ``acts`` is
-    what a person did: some of ``put``, ``moved`` and ``took``.
+    without articles (of *which came first, the fork or the cup?* both: *fork or cup*), ``relation`` is the name of a
+    relation, ``event`` what happened to the thing, ``speaker`` the person named, ``of_asker`` True if the person is the
+    one who asks, and ``order`` ``first`` or ``last``. ``acts`` is what a person did: some of ``put``, ``moved`` and
+    ``took``.
     """
 
     text: str
@@ -272,6 +178,7 @@ class RecallQuestion:
     when: When = When()
     of_asker: bool = False
     acts: tuple[str, ...] = ()
+    asks_how_long_ago: bool = False
 
 
 def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion:
@@ -298,14 +205,18 @@ def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion
         raise RecallQuestionError(f"a question must be a string; ask, for example: {WORDINGS[1]}")
     if re.match(r"\s*(?:why|for what reason|what for)\b", text, re.IGNORECASE):
         return RecallQuestion(text, "why")
+    if re.match(r"\s*(?:will|(?:what|where|who|when|which \w+) will|(?:is|are) .+ going to)\b", text, re.IGNORECASE):
+        return RecallQuestion(text, "future")
     if len(text) > MAX_QUESTION:
         raise RecallQuestionError(f"a question must have at most {MAX_QUESTION} characters, got {len(text)}")
     ontology = ontology or default_ontology()
     try:
-        tree = _parser(tuple(_relation_words(ontology))).parse(_plain(text))
+        plain = plain_question(text)
+        tree = _parser(tuple(_relation_words(ontology))).parse(plain)
     except UnexpectedInput as error:
         raise _not_understood(text) from error
-    return _question(text, tree.children[0], ontology)
+    question = _question(text, plain, tree.children[0], ontology)
+    return replace(question, asks_how_long_ago=_HOW_LONG_AGO.search(text) is not None)
 
 
 def is_question(text: str, ontology: Ontology | None = None) -> bool:
@@ -339,28 +250,9 @@ def is_question(text: str, ontology: Ontology | None = None) -> bool:
     return True
 
 
-def _plain(text: str) -> str:
-    """Return a question in lower case, without punctuation, with contractions and numbers written out."""
-    plain = text.lower().replace("\u2019", "'").replace("which ones", "which one")
-    plain = re.sub(r"\b(where|what|who|when|it|that|there)'s\b", r"\1 is", plain)
-    plain = re.sub(r"\b(is|are|was|were|has|have|did|do|does)n't\b", r"\1 not", plain)
-    plain = re.sub(r"\b(have|has|did|were|was|are|is) you not\b|\b(have|has) not you\b", r"you \1\2 not", plain)
-    plain = re.sub(r"\b(have|has) (i|we) told\b", r"did \2 tell", plain)
-    plain = re.sub(r"[?!,;\"]|\.(?=\s|$)", " ", plain)
-    plain = re.sub(r"\b(a|p)\.m\.?(?=\s|$)", r"\1m", plain)
-    plain = re.sub(_PREFACE, "", plain)
-    plain = re.sub(r"\bwhich (?=did\b)|\bwhich (one )?of (them|these|those)\b", "which one ", plain)
-    plain = re.sub(r"\s+please\s*$", "", plain.replace("how many times", "how often"))
-    plain = reworded(_SPOKEN.sub(_spoken_time, " ".join(plain.split())))
-    for pattern, wording in _REWORDED:
-        plain = pattern.sub(wording, plain)
-    plain = re.sub(r"\bstill\b|(?<=\w )here\b", "", plain)
-    return " ".join(_COUNTED.sub(lambda found: f"{_NUMBERS[found[1]]} ", plain).split())
-
-
 def _not_understood(text: str) -> RecallQuestionError:
-    near = difflib.get_close_matches(_plain(text), [_plain(each) for each in WORDINGS], n=2, cutoff=0.0)
-    wordings = {_plain(each): each for each in WORDINGS}
+    near = difflib.get_close_matches(plain_question(text), [plain_question(each) for each in WORDINGS], n=2, cutoff=0.0)
+    wordings = {plain_question(each): each for each in WORDINGS}
     examples = " or ".join(f"'{wordings[each]}'" for each in near)
     return RecallQuestionError(
         f"the question '{' '.join(text.split())[:80]}' is not understood; ask, for example, {examples}"
@@ -389,7 +281,13 @@ def _parser(relations: tuple[str, ...]) -> Lark:
     return Lark("\n".join((grammar, *terminals, "")), parser="lalr", maybe_placeholders=False)
 
 
-def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
+_AT_A_TIME = frozenset({"whether", "whether_there", "related", "present", "how_many", "layout", "fault"})
+"""Kinds of questions about what holds at a time; in the past tense and without a time, at any time."""
+
+_BE = re.compile(r"\b(?:is|are|(?P<past>was|were))\b")
+
+
+def _question(text: str, plain: str, tree: Any, ontology: Ontology) -> RecallQuestion:
     kind, person = str(tree.data), None
     nouns: list[str | None] = [" ".join(each.children[0].children) for each in tree.children if _is(each, "np")]
     named = [" ".join(each.children) for each in tree.children if _is(each, "nouns")]
@@ -412,6 +310,10 @@ def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
         thing, other = (asked or [None])[0], (nouns or [None])[0]
     else:
         thing, other = (nouns or [None])[0], (nouns[1:] or [None])[0]
+    if kind == "whether_called":
+        other = named[0]
+    first = _BE.search(plain)
+    is_past = first is not None and first["past"] is not None
     return RecallQuestion(
         text=text,
         kind=kind,
@@ -421,7 +323,7 @@ def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
         event=_EVENTS[events[0].type](str(events[0])) if events and kind in _DONE else None,
         speaker=" ".join(map(str, speaker.children)) if isinstance(speaker, Tree) else person,
         order=order,
-        when=_when(whens[0]) if whens else When(),
+        when=_when(whens[0]) if whens else When("ever") if kind in _AT_A_TIME and is_past else When(),
         of_asker=of_asker,
         acts=() if act is None else acts_of(act),
     )
@@ -440,7 +342,9 @@ _WHENS = {"now", "before", "at_first", "since", "after", "before_time", "at_time
 
 
 def _of_verb(verb: str) -> str:
-    if verb.startswith(("come", "arrive", "appear")):
+    if verb.startswith(("come back", "came back")):
+        return "returned"
+    if verb.startswith(("come", "came", "arrive", "appear")):
         return "come"
     return "gone"
 
@@ -453,7 +357,7 @@ _EVENTS: dict[str, Callable[[str], str]] = {
     "VERB": _of_verb,
     "WENT": lambda _: "gone",
     "LEFT": lambda _: "gone",
-    "CAME": lambda _: "come",
+    "CAME": _of_verb,
 }
 
 BY_PERSON = ("who_did", "what_did", "when_did_by", "whether_did_by", "how_many_did_by", "how_often_by")
@@ -464,6 +368,7 @@ _WITH_AGENT = frozenset(BY_PERSON) - {"who_did"} | {"where_put"}
 
 _ASKING_FOR_THINGS = frozenset(
     {"related", "present", "gone", "come", "moved", "shown", "how_many", "how_many_did", "how_many_shown"}
+    | {"unmoved", "always"}
     | {"what_did", "how_many_did_by"}
 )
 """Kinds of questions for things, whose first noun phrase is a landmark."""

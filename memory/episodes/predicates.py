@@ -18,6 +18,9 @@ it is no longer expected."""
 PUT, MOVED, TOOK = "put", "moved", "took"
 """Predicates of what a person did: put a new thing down, moved a thing to another place, and took a thing away."""
 
+LAYOUT, FAULT = "layout", "fault"
+"""Predicates of what a robot concludes about the table: the name of its layout, and a mistake in words."""
+
 SAYS = "says"
 """Predicate of what the robot says."""
 

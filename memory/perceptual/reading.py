@@ -37,7 +37,7 @@ from deixis.memory.perceptual.protocol import (
     ViewKey,
 )
 from deixis.memory.perceptual.records import CategoryRecord, Json, View, check_name
-from deixis.ontology.relations.relation import nearest
+from deixis.spelling import nearest
 
 MAX_LISTED = 5
 """Maximum number of categories that a message lists."""

@@ -57,7 +57,7 @@ from deixis.memory.semantic.rdf.graphs import (
 )
 from deixis.memory.semantic.rdf.links import unlinking
 from deixis.memory.semantic.stats import MemoryStats, count
-from deixis.ontology.relations.relation import nearest
+from deixis.spelling import nearest
 
 if TYPE_CHECKING:
     import rdflib

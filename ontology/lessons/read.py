@@ -16,7 +16,8 @@ from deixis.ontology.lessons.types import ANONYMOUS, Alternative, LayoutConcept,
 from deixis.ontology.rdf.triple_index import TripleIndex
 from deixis.ontology.rdf.triples import last_part
 from deixis.ontology.rdf.vocabulary import DX, PROV, W3C
-from deixis.ontology.relations.relation import Relation, Relations, nearest
+from deixis.ontology.relations.relation import Relation, Relations
+from deixis.spelling import nearest
 
 
 def layouts(triples: Iterable[ox.Triple], relations: Relations) -> tuple[LayoutConcept, ...]:

@@ -14,7 +14,8 @@ from datetime import datetime
 from enum import IntEnum
 
 from deixis.errors import OntologyError, UnknownTermError
-from deixis.ontology.relations.relation import Relation, nearest
+from deixis.ontology.relations.relation import Relation
+from deixis.spelling import nearest
 
 SAYING = "saying"
 """Name of the model of the pairs that people mention at all, in whatever relation."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 from deixis.errors import OntologyError, UnknownTermError
 from deixis.ontology.rdf.vocabulary import DX, W3C
 from deixis.ontology.relations.allen import SYMBOLS, Allen, allen_mask
+from deixis.spelling import nearest
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,8 +45,8 @@ class Relation:
     >>> left = default_ontology().relations["left"]
     >>> left.word, left.phrase, str(left.reading)
     ('left', 'left of', 'wide')
-    >>> left.symmetric, left.bit == 1 << left.index, left.admits().shape
-    (False, True, (13, 13))
+    >>> left.symmetric, left.is_strict_order, left.bit == 1 << left.index, left.admits().shape
+    (False, True, True, (13, 13))
     """
 
     name: str  # 'top_left', 'exactly_top_left'
@@ -79,6 +79,11 @@ class Relation:
     def symmetric(self) -> bool:
         """True if the relation is its own inverse."""
         return self.inverse == self.name
+
+    @property
+    def is_strict_order(self) -> bool:
+        """True if nothing has the relation to itself, as no transitive relation with another inverse allows."""
+        return self.transitive and not self.symmetric
 
     def admits(self) -> NDArray[np.bool_]:
         """Return the admitted atoms of the rectangle algebra.
@@ -281,30 +286,6 @@ def plain_phrase(words: str) -> str:
 
 
 ARTICLES = frozenset({"the", "a", "an"})
-
-
-def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is spelt most like a word.
-
-    Parameters
-    ----------
-    word
-        The word.
-    known
-        The known words.
-
-    Returns
-    -------
-    str or None
-        The nearest word, or None if all are too different.
-
-    Examples
-    --------
-    >>> nearest("rihgt", ["left", "right"])
-    'right'
-    """
-    found = difflib.get_close_matches(word, sorted(known), n=1, cutoff=0.6)
-    return found[0] if found else None
 
 
 def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relation:

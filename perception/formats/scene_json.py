@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from deixis.ontology.relations.relation import nearest
 from deixis.ontology.strict_json import json_type, parse_json
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.things.colours import Rgb, hex_of_rgb, rgb_of_hex
@@ -23,6 +22,7 @@ from deixis.perception.formats.coco import coco_scene, is_coco
 from deixis.perception.formats.labelme import is_labelme, labelme_scene
 from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.scene import DEFAULT_VIEWPOINT, PLACED_VIEWER, UNITS, UNNAMED, Heading, PerceivedObject, Scene
+from deixis.spelling import nearest
 from deixis.text_files import no_such_file
 
 Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]
@@ -312,7 +312,7 @@ def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tupl
     if not isinstance(data, list | tuple) or len(data) not in counts:
         given = f"a list of {len(data)}" if isinstance(data, list | tuple) else json_type(data)
         raise SceneError(f"{where} must be a list of {' or '.join(map(str, counts))} numbers, got {given}")
-    return tuple(number(value, where) * scale for value in data)
+    return tuple(number(value, f"{where}[{i}]") * scale for i, value in enumerate(data))
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:

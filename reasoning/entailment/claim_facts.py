@@ -14,6 +14,7 @@ from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Relation, Relations
+from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 
 COMPARATIVES = {
     "largest": "bigger",
@@ -147,3 +148,45 @@ def with_facts_of_claims(graph: RelationGraph, found: Sequence[ClaimFact]) -> Re
     """
     facts = [*graph.facts(), *(entry.fact for entry in found)]
     return RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, kinds=graph.kinds, colours=graph.colours)
+
+
+def implications_with_claims(
+    graph: RelationGraph, claims: Sequence[Claim], time_limit: float = TIME_LIMIT
+) -> tuple[tuple[ClaimFact, ...], tuple[Implications, ...]]:
+    """Return what follows from facts and claims together.
+
+    What *between* implies depends on what follows from the other facts, so it is added to them until nothing is new.
+
+    Parameters
+    ----------
+    graph
+        Graph of the stated facts.
+    claims
+        The claims.
+    time_limit
+        Time limit in seconds for deciding choices in the facts.
+
+    Returns
+    -------
+    tuple
+        Facts that the claims imply without being stated, and implications: the last ones have all of these facts, the
+        ones before only some of those that *between* adds.
+    """
+    stated = {str(fact) for fact in graph.facts() if not fact.optional and fact.weight >= 1}
+    found = facts_of_claims(claims, graph.nodes, graph.vocabulary)
+    found = tuple(entry for entry in found if str(entry.fact) not in stated)
+    implied = [Implications(with_facts_of_claims(graph, found) if found else graph, time_limit)]
+    while implied[-1].consistent and any(claim.relation == "between" for claim in claims):
+        more = facts_of_claims(claims, graph.nodes, graph.vocabulary, implied[-1].holds)
+        known = stated | {str(entry.fact) for entry in found}
+        more = tuple(
+            entry
+            for entry in more
+            if str(entry.fact) not in known
+            and not implied[-1].holds(entry.fact.relations[0], entry.fact.subject, entry.fact.object)
+        )
+        if not more:
+            break
+        found += more
+        implied.append(Implications(with_facts_of_claims(graph, found), time_limit))
+    return found, tuple(implied)

@@ -20,6 +20,7 @@ from deixis.reasoning.constraints.disjunctive import Clauses, Search, SearchOutc
 from deixis.reasoning.entailment.bounds import AXES, bounds_of, order_differences
 from deixis.reasoning.entailment.closed import AxisRows, Groups, Orders, groups_of, order_graph, orders_of
 from deixis.reasoning.entailment.demands import Choice, Demands
+from deixis.reasoning.entailment.word_conflicts import conflicting_edges
 from deixis.reasoning.errors import OutOfTimeError
 
 
@@ -27,8 +28,9 @@ from deixis.reasoning.errors import OutOfTimeError
 class Closed:
     """The implications of demands.
 
-    ``orders`` is None if the demands are inconsistent. ``complete`` is True if ``orders`` has everything that all
-    pictures share, ``decided`` if it is known whether a picture exists; both are True unless time ran out.
+    ``orders`` is None if the demands are inconsistent, or the facts of graded words. ``complete`` is True if ``orders``
+    has everything that all pictures share, ``decided`` if it is known whether a picture exists; both are True unless
+    time ran out.
     """
 
     groups: Groups
@@ -56,6 +58,8 @@ def close(demands: Demands, deadline: Deadline) -> Closed:
     graph, firm = demands.graph, demands.firm
     groups = groups_of(graph.subjects[firm], graph.objects[firm], len(graph.nodes))
     orders = orders_of(demands.bounds, groups)
+    if orders is not None and conflicting_edges(graph, firm) is not None:
+        orders = None
     if orders is None or not demands.choices:
         return Closed(groups, orders)
     by_group: dict[int, list[Choice]] = {}
@@ -234,7 +238,7 @@ def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -
 
 
 def consistent(demands: Demands, deadline: Deadline) -> bool:
-    """Return whether some demands have a picture.
+    """Return whether some demands have a picture, and the facts of graded words agree with each other.
 
     Parameters
     ----------
@@ -246,7 +250,7 @@ def consistent(demands: Demands, deadline: Deadline) -> bool:
     Returns
     -------
     bool
-        True if they have one.
+        True if they do.
 
     Raises
     ------
@@ -254,7 +258,7 @@ def consistent(demands: Demands, deadline: Deadline) -> bool:
         If the deadline passes first.
     """
     n = len(demands.graph.nodes)
-    if order_graph(demands.bounds, n).contradictory:
+    if order_graph(demands.bounds, n).contradictory or conflicting_edges(demands.graph, demands.firm) is not None:
         return False
     return not demands.choices or local_problem(demands, np.arange(n), demands.choices).picture(deadline) is not None
 

@@ -1,7 +1,8 @@
 """Contradictions in a relation graph: minimal sets of facts that have no common picture.
 
 Facts without choices are contradictory if the orders of edges that they demand form a cycle; the cycle with the fewest
-facts is reported. Facts with choices are contradictory if no combination of the choices has a picture.
+facts is reported. Facts with choices are contradictory if no combination of the choices has a picture. Facts of graded
+words may contradict each other too (:mod:`deixis.reasoning.entailment.word_conflicts`).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from deixis.reasoning.entailment.closed import order_graph
 from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.demands import Demands, demands_of_facts
 from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.entailment.word_conflicts import conflicting_edges
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,9 @@ class Conflict:
 
 
 def compatible(a: Relation, b: Relation) -> bool:
-    """Return whether two boxes can have both of two relations: their atoms intersect on every axis.
+    """Return whether two boxes can have both of two relations.
+
+    Their atoms must intersect on every axis, and a strict order excludes its inverse.
 
     Parameters
     ----------
@@ -51,6 +55,8 @@ def compatible(a: Relation, b: Relation) -> bool:
     >>> compatible(r["left"], r["top"]), compatible(r["left"], r["right"]), compatible(r["on"], r["under"])
     (True, False, False)
     """
+    if a.is_strict_order and a.inverse == b.name:
+        return False
     height = not (a.z_atoms and b.z_atoms) or bool(a.z_atoms & b.z_atoms)
     return bool(a.x_atoms & b.x_atoms) and bool(a.y_atoms & b.y_atoms) and height
 
@@ -86,9 +92,12 @@ def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Co
     demands = implied.demands
     graph = implied.graph
     cycle = order_graph(demands.bounds, len(graph.nodes)).shortest_cycle()
-    edges = _group_edges(implied) if cycle is None else sorted(cycle)
+    of_words = None
+    if cycle is None and implied.closed.contradictory < 0:
+        of_words = conflicting_edges(graph, demands.firm)
+    edges = sorted(cycle or of_words or _group_edges(implied))
     facts, minimal = [graph.fact(edge) for edge in edges], True
-    if cycle is None or not _is_single_cycle(demands, edges):
+    if of_words is None and (cycle is None or not _is_single_cycle(demands, edges)):
         found = minimal_subset(facts, lambda chosen: _inconsistent(chosen, graph.vocabulary, until))
         facts, minimal = list(found.items), found.proved
     if graph.sources:

@@ -85,7 +85,7 @@ def ground(
     in_order = in_order if alignment.seen is None else alignment.seen
     known = zip(in_order.unary, in_order.allowed, strict=True)
     alone = [(row.tobytes(), mask.tobytes()) for row, mask in known]
-    groups = tuple(interchangeable(in_order.description, alone))
+    groups = tuple(interchangeable(in_order.description, alone, in_order.claims))
     outcomes = _outcomes(in_order, alignment, stated)
     matches = _matches(in_order, alignment, outcomes, groups)
     names = evidence.description.nodes

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from deixis.answers import Answer, count
 from deixis.arguments import checks_arguments
 from deixis.errors import GraphError, UnknownTermError
-from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import SettingError, UnknownCalculusError
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.geometry.rectangle import require_boxes
@@ -28,6 +27,7 @@ from deixis.reasoning.qualitative.calculi.bridges import (
 )
 from deixis.reasoning.qualitative.calculi.distance import DEFAULT_RANGES
 from deixis.reasoning.qualitative.calculi.registry import calculus
+from deixis.spelling import nearest
 
 CARDINAL_DIRECTIONS: tuple[str, ...] = ("n", "ne", "e", "se", "s", "sw", "w", "nw")
 SAME_PLACE = "eq"

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 from deixis.errors import DeixisError, UnknownTermError
 from deixis.reasoning.constraints.proof import Proof
 from deixis.reasoning.errors import InconsistencyError
+from deixis.spelling import nearest
 
 
 class FluentError(DeixisError, ValueError):
@@ -18,8 +18,8 @@ class UnknownFluentError(UnknownTermError):
     """An unknown fluent or time point; the message suggests the nearest known one."""
 
     def __init__(self, kind: str, name: str, names: Iterable[str]) -> None:
-        close = get_close_matches(name[:100], list(names), n=1)
-        super().__init__(f"there is no {kind} '{name}'" + (f"; did you mean '{close[0]}'?" if close else ""))
+        near = nearest(name, names)
+        super().__init__(f"there is no {kind} '{name}'" + (f"; did you mean '{near}'?" if near else ""))
 
 
 class TemporalConflictError(InconsistencyError):

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TextIO
 
 from deixis.errors import DeixisError
+from deixis.spelling import nearest
 
 MAX_CHARACTERS = 100_000_000
 """Maximum number of characters of a text that is read as a whole."""
@@ -20,9 +21,6 @@ MAX_CHARACTERS = 100_000_000
 MAX_LINE_CHARACTERS = 1_000_000
 """Maximum number of characters of a line."""
 
-
-MIN_SIMILARITY = 0.85
-"""Minimum similarity of two names, as a ratio of matching characters, at which one is suggested for the other."""
 
 MAX_NAMES = 10_000
 """Maximum number of files of a folder among which a similar name is sought."""
@@ -48,13 +46,14 @@ def no_such_file(file: str | Path, shown: str | None = None) -> str:
     >>> no_such_file("nowhere/dinner.layout")
     'nowhere/dinner.layout: there is no such file'
     """
-    from difflib import get_close_matches
-
-    path, similar = Path(file), list[str]()
+    path, near = Path(file), None
     with contextlib.suppress(OSError, ValueError):
-        names = [entry.name for entry in islice(path.parent.iterdir(), MAX_NAMES) if entry.suffix == path.suffix]
-        similar = get_close_matches(path.name, sorted(names), n=1, cutoff=MIN_SIMILARITY)
-    hint = f"; did you mean '{path.parent / similar[0]}'?" if similar else ""
+        stem, _, ending = path.name.partition(".")
+        names = [entry.name.partition(".") for entry in islice(path.parent.iterdir(), MAX_NAMES)]
+        alike = nearest(stem, {name[0] for name in names})
+        found = nearest(ending, {name[2] for name in names if name[0] == alike})
+        near = None if found is None else f"{alike}.{found}"
+    hint = f"; did you mean '{path.parent / near}'?" if near else ""
     return f"{file if shown is None else shown}: there is no such file{hint}"
 
 

@@ -35,6 +35,7 @@ class Chunker(FixedPhraseChunker):
         at, end = 0, len(self.words)
         while at < end:
             if (used := self._use(at)) is not None:
+                self._name_used()
                 at = used
                 continue
             chunk = self._chunk(at)
@@ -90,6 +91,7 @@ class Chunker(FixedPhraseChunker):
         if (
             is_known(norm)
             or not norm.isalpha()
+            or norm.endswith("ly")  # 'traditionally the towels …'
             or self.nouns.is_known_noun(norm)
             or self.norms[at + 1] in ("that", "which")
         ):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
@@ -19,10 +20,11 @@ from deixis.grammar.english.vocabulary.function_words import (
     IS_FORMS,
     MODALS,
     NEGATIONS,
+    POSSESSIVES,
     PRONOUNS,
 )
 from deixis.grammar.english.vocabulary.idioms import IDIOMS
-from deixis.grammar.english.vocabulary.nouns import PARTS
+from deixis.grammar.english.vocabulary.nouns import GENERAL, PARTS, PEOPLE, last_word
 from deixis.grammar.english.vocabulary.relation_words import (
     CIRCUMSTANCES,
     DIRECTION_WORDS,
@@ -34,6 +36,7 @@ from deixis.grammar.english.vocabulary.relation_words import (
 )
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import FIND_VERBS, PUT_VERBS
+from deixis.ontology.inflection import singulars
 
 
 @cache
@@ -576,23 +579,76 @@ class FixedPhraseChunker(JointChunker):
         return i if self.norms[i - 1] in ("to", "go") and i > at + 2 else None
 
     def _use(self, at: int) -> int | None:
-        """Return the end of a relative clause that tells who uses a thing, and how often: *the cups you use daily*."""
+        """Return the end of a relative clause that tells which thing a person means: *the cups you use daily*."""
         i = at + (self.norms[at] in ("that", "which"))
-        if self._previous() != "NP" or self.norms[i] not in _USERS:
+        if self._previous() != "NP" or (user := self._end_of_user(i)) is None:
             return None
-        i += 1
-        while self.norms[i] in ADVERBS | _FREQUENCIES or self.norms[i] in ("'ll", "will", "can", "do", "don't", "not"):
+        i = user
+        while self.norms[i] in ADVERBS | _FREQUENCIES | _HELPING or self.norms[i] in NEGATIONS:
             i += 1
-        form = self._verbs.get(self.norms[i])
-        if form is None or form.lemma not in _USING:
+        form, placing = self._verbs.get(self.norms[i]), False
+        if form is not None and form.lemma in _WISHING and self.norms[i + 1] == "to":
+            i += 2
+            form = self._verbs.get(self.norms[i])
+            if form is not None and form.form != "base":
+                return None
+            placing = self.norms[i] in PUT_VERBS or (form is not None and form.kind == "posture")
+        elif (self.norms[i] if form is None else form.lemma) not in _USING:
             return None
-        i += 1 + ((form.lemma, self.norms[i + 1]) == ("reach", "for"))
-        while self.norms[i] in _FREQUENCIES or self.norms[i : i + 2] in _FREQUENT_PAIRS:
-            i += 1 if self.norms[i] in _FREQUENCIES else 2
+        i = self._end_of_use(i + 1)
         follows = self._verbs.get(self.norms[i])
         said = self.norms[i] in IS_FORMS | MODALS.keys() or (follows is not None and follows.form in ("base", "s"))
-        ends = self.norms[i] in CLAUSE_ENDS | prepositions().keys() and self.norms[i] != "to"
+        ends = self.norms[i] in CLAUSE_ENDS | prepositions().keys() and self.norms[i] != "to" and not placing
         return i if said or ends else None
+
+    def _name_used(self) -> None:
+        """Make a general noun with such a clause the name of new things: *the items you need*, *anything you use*."""
+        last = self.chunks[-1]
+        phrase = last.value
+        if phrase.pronoun in ("anything", "everything", "something") and not phrase.head:
+            last.value = replace(phrase, head="thing", pronoun=None, plural=True)
+        elif (
+            phrase.plural and last_word(phrase.head) in GENERAL and phrase.determiner in ("the", "those", "these", None)
+        ):
+            last.value = replace(phrase, determiner="some")  # not the heavy items that were named before
+
+    def _end_of_user(self, at: int) -> int | None:
+        """Return the end of the person of such a clause: *you*, *most people*, *your children*."""
+        i = at + (self.norms[at] == "most")
+        if self.norms[i] in _USERS:
+            return i + 1
+        owned = self.norms[i] in POSSESSIVES or self.norms[i] in ("the", "some", "many")
+        return i + 2 if owned and not PEOPLE.isdisjoint(singulars(self.norms[i + 1])) else None
+
+    def _end_of_use(self, at: int) -> int:
+        """Return the end of what follows the verb: *access to*, *most often*, *for cooking*, *with* alone."""
+        i = at
+        access = next((k for k in range(i, i + 3) if self.norms[k] == "access"), None)
+        if access is not None and self.norms[access + 1] == "to":
+            i = access + 2  # 'things you need quick access to'
+        while True:
+            purpose = self.norms[i] == "for" and self.norms[i + 1].endswith("ing") and self.norms[i + 2] in CLAUSE_ENDS
+            if purpose or list(self.norms[i : i + 2]) in _FREQUENT_PAIRS:
+                i += 2
+            elif self._adds_nothing(i):
+                i += 1
+            else:
+                return i
+
+    def _adds_nothing(self, at: int) -> bool:
+        """Return True for an adverb, and for a preposition without its noun."""
+        adverb = self.norms[at] in _FREQUENCIES or self.norms[at].endswith("ly")
+        return adverb or (self.norms[at] in _STRANDED and self._is_stranded(at + 1))
+
+    def _is_stranded(self, at: int) -> bool:
+        """Return True where a preposition has no noun after it: *the toys they play with are …*."""
+        form = self._verbs.get(self.norms[at])
+        finite = self.norms[at] in IS_FORMS | MODALS.keys() or (form is not None and form.form == "s")
+        going = form is not None and form.form == "base" and form.kind == "posture"
+        again = (
+            self.norms[at] in prepositions().keys() | _FREQUENCIES or list(self.norms[at : at + 2]) in _FREQUENT_PAIRS
+        )
+        return finite or going or again or self.norms[at] in CLAUSE_ENDS
 
     def _chooses(self, at: int) -> bool:
         """Return True if one of several things is meant: *there are six benches, and you want the leftmost one*."""
@@ -695,10 +751,20 @@ _TRYING = word_set("consider try recommend begin start continue")
 
 _USERS = word_set("you we they i people guests everyone")
 """Subjects of relative clauses that tell who uses a thing."""
-_USING = word_set("use need want like reach love eat drink wear own buy enjoy")
+_USING = word_set(
+    "use need want like reach love eat drink wear own buy enjoy access prefer treasure collect require cook bake read"
+    " write play work watch handle refer rely care grab consume choose pick admire adore remember forget share value"
+    " operate reuse cherish utilize utilise make receive"
+)
+"""Verbs of such clauses, which say no place."""
+_WISHING = word_set("want need like love plan hope wish prefer try intend have tend")
+"""Verbs before the infinitive of such a clause: *the pieces you want to show*."""
+_HELPING = word_set("'ll will can do don't would might may 've have has 're are 'd must should could 'm am")
+_STRANDED = word_set("for with to from about without on at through of")
+"""Prepositions that can end such a clause."""
 _FREQUENCIES = word_set(
     "most often daily frequently regularly rarely seldom occasionally sometimes weekly less least more always usually"
-    " later soon first"
+    " later soon first now already again still"
 )
 _FREQUENT_PAIRS = (["every", "day"], ["every", "week"], ["all", "day"], ["each", "day"], ["the", "most"], ["a", "lot"],
                    ["right", "away"], ["the", "least"], ["each", "morning"], ["every", "morning"], ["that", "week"],

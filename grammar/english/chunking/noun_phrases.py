@@ -8,7 +8,7 @@ from deixis.grammar.english.chunking.modifiers import ModifierFinder
 from deixis.grammar.english.chunking.noun_positions import GENERIC_NOUNS
 from deixis.grammar.english.tagging.word_classes import NOUN_OR_PREPOSITION
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
-from deixis.grammar.english.vocabulary.adjectives import is_adjective, is_material_noun
+from deixis.grammar.english.vocabulary.adjectives import QUALITIES, is_adjective, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import (
     ADVERBS,
     APPROXIMATE,
@@ -254,7 +254,10 @@ class NounChunker(ModifierFinder):
                 continue
             norm = norms[i]
             favourite = len(nouns) == 1 and not self._nouns.knows(nouns[0]) and norms[i - 1] == nouns[0]
-            if norm in ("one", "ones") and (not nouns or favourite) and (modifiers or determiner or owner):
+            quality = favourite and nouns[0] in QUALITIES
+            if norm in ("one", "ones") and (not nouns or favourite) and (modifiers or determiner or owner or quality):
+                if quality:
+                    modifiers += (Adjective(nouns[0], "state", Degree.PLAIN, self._span(i - 1, i)),)
                 phrase = NounPhrase(
                     self._span(start, i + 1), "", determiner, count, norm == "ones", "one", modifiers, owner=owner,
                     negated=negated,

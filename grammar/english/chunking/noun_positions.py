@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from functools import cache
 
-from deixis.grammar.english.tagging.word_classes import FINITE, NOMINAL, WordClass, closed_words
+from deixis.grammar.english.tagging.word_classes import FINITE, NOMINAL, NOUN_OR_PREPOSITION, WordClass, closed_words
 from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Degree, Span
 from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective, is_material_noun
 from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
     DETERMINERS,
     HEDGES,
     IS_FORMS,
@@ -380,13 +381,19 @@ class NounFinder:
             return None
         before = self.norms[at - 1] if at else ""
         after = self.norms[at + 1]
-        if text == "A":
+        noun = at > 0 and self.words[at - 1].text.islower() and self._nouns.knows(before)
+        follows = after[:1].isalpha() and self._nouns.knows(after) and after not in NOUN_OR_PREPOSITION
+        inside = noun and not follows  # 'panel A using screws'
+        if text == "A" and not inside:
             form = self._verbs.get(after)
             named = (
                 not after[:1].isalpha() or after in self._closed or after in prepositions() or after in ("and", "or")
             )
             if not named and not (form is not None and form.form == "s"):
                 return None
+            later = self.norms[at + 2]
+            if (after in ADVERBS or after.endswith("ly")) and (is_adjective(later) or later.endswith(("ed", "en"))):
+                return None  # 'A simply folded napkin'
             if is_adjective(after) and after not in ("left", "right"):
                 return None
         if text == "I":
@@ -438,7 +445,7 @@ class NounFinder:
         """Return True if a noun phrase goes on with a word as its noun, after the nouns that it has so far."""
         norm = self.norms[at]
         if norm[0].isdigit():
-            return bool(nouns) and norm.isdigit() and self.norms[at + 1] not in UNITS
+            return bool(nouns) and self.classes[at] == "noun" and self.norms[at + 1] not in UNITS
         if not nouns:
             return self.is_noun(at)
         named = self.is_name(at) and self._nouns.knows(nouns[-1]) and self.words[at - 1].text[:1].islower()

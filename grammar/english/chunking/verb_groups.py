@@ -157,10 +157,13 @@ class VerbChunker(RelatorChunker):
         """Return the verb after *and* that shares the modal verb before: *should be chilled and stand next to it*."""
         form = self._verbs.get(self.norms[at])
         last = next((c for c in reversed(self.chunks) if c.type in FINITE | {"PUT", "CUT"}), None)
-        if form is None or last is None or last.type not in FINITE or not self._predicate_after(at):
+        placed = self._predicate_after(at) or self._match(at + 1) is not None
+        if form is None or last is None or last.type not in FINITE or not placed:
             return None
         if last.value.lemma == "be" and self.norms[at] in ("put", "set", "laid", "stood", "hung"):
-            coordinated = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
+            be = next(i for i in range(len(self.chunks) - 1, -1, -1) if self.chunks[i] is last)
+            types = [chunk.type for chunk in self.chunks[be + 1 :] if chunk.type != "ADVERB"]
+            coordinated = types[:1] in (["PART"], ["TPART"]) and set(types[1:-1]).isdisjoint(JOINT_TYPES)
             return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if coordinated else None
         spatial = form.form == "base" and form.kind in ("posture", "lean", "face", "point")
         placed = last.value.lemma == "be" and self.chunks[-2].type == "NP"  # 'it should be on the tray and rest'
@@ -467,7 +470,8 @@ class VerbChunker(RelatorChunker):
                 return Chunk("TPART", at, end, found)
             if imperative and norm in _INTRANSITIVE and self.nouns.is_determiner(end):
                 return Chunk("VERB", at, end, found)  # 'on the table, whose top is oak, lie a loaf and a knife'
-            if imperative and not subject_is_you and self.nouns.is_determiner(end):
+            ordered = self.nouns.is_determiner(end) or self._acts_on(i, end, form.kind)
+            if imperative and not subject_is_you and ordered:
                 return Chunk("DO", at, end, found)
             if subject == "REL":
                 return self._finite(at, end, found)
@@ -577,6 +581,8 @@ class VerbChunker(RelatorChunker):
             return False
         if self.nouns.number(at) is not None and self.norms[at + 1] in LAYERS:
             return False
+        if (self.norms[at], self.norms[at + 1]) in (("face", "up"), ("face", "down")):
+            return False  # 'the card is turned face up'
         found = self.nouns.phrase(at, "TVERB")
         return found is not None and found[1] is not None
 
@@ -638,6 +644,11 @@ class VerbChunker(RelatorChunker):
         return after in ("back", "away", "aside", "here") or (
             after not in ("for", "at", "to") and not self.nouns.is_determiner(at) and self._relator(at) is not None
         )
+
+    def _acts_on(self, at: int, end: int, kind: str) -> bool:
+        """Return True for a verb of action before its object without an article: *rinse cups in the sink*."""
+        acts = kind == "other" and not self.nouns.is_noun(at) and not self.nouns.is_known_noun(self.norms[at])
+        return acts and self.nouns.starts(end)
 
     def _imperative_object(self, at: int) -> bool:
         bound = self.norms[at : at + 2] in (["at", "least"], ["at", "most"]) and self._measure(at) is None

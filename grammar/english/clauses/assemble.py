@@ -30,9 +30,14 @@ _OWN = re.compile(r"\b(?:his|her)\b", re.IGNORECASE)
 _FRAMES = frozenset({"facing", "from"})
 _TREATING = word_set(
     "wash rinse soak clean wipe scrub dry boil fry heat warm reheat bake roast cook cool chill mix beat whisk stir peel"
-    " chop slice shake toast melt"
+    " chop slice shake toast melt polish sharpen scour launder sanitize sanitise sterilize marinate mash mince dice"
+    " poach saute simmer steam grill blanch braise baste knead blend dissolve thaw defrost freeze preheat whip puree"
+    " grate carve drain dilute cleanse moisten knit sew iron"
 )
-"""Commands after which *in* and *under* tell where something is done: *wash the cups in the sink*."""
+"""Commands after which *in* and *under* tell where something is done: *wash the cups in the sink*.
+
+After their object without an article, *on* does so as well: *chop onions on the board*.
+"""
 _BEING = frozenset({"be", "lie", "stand", "sit", "rest", "lay"})
 """Verbs before *off* and *out of* that say where a thing is not."""
 _PLACING = frozenset(
@@ -804,7 +809,9 @@ def _without_place_of_act(noun: Noun) -> Noun:
     """Return the object of *wash the cups in the sink* without the place where that is done."""
 
     def bare(phrase: NounPhrase) -> NounPhrase:
-        kept = tuple(p for p in phrase.predicates if p.relation not in ("inside", "under", "above"))
+        named = phrase.determiner is not None or phrase.owner is not None or phrase.pronoun is not None
+        where = {"inside", "under", "above"} if named else {"inside", "under", "above", "on"}
+        kept = tuple(p for p in phrase.predicates if p.relation not in where)
         for predicate in phrase.predicates:
             if predicate not in kept:
                 misunderstood(predicate.span, Guess.ACTION.value)

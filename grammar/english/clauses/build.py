@@ -10,7 +10,7 @@ from lark import Transformer, v_args
 
 from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.built import ALONG_WITH, Built, Noun, Predication, Verb, misunderstood, union
-from deixis.grammar.english.clauses.places import directions_of, is_place, other_side, place
+from deixis.grammar.english.clauses.places import arrangement_of, directions_of, is_place, other_side, place
 from deixis.grammar.english.clauses.predicates import (
     AWAY_FROM,
     DIRECTION_RELATIONS,
@@ -240,7 +240,11 @@ class Builder(Transformer[Any, Built]):
                 *rest, last = phrase.members  # 'A on the left and B on the right, next to C'
                 last = _restricted(last, mods)
                 phrase = replace(phrase, members=(*rest, last), span=union(phrase.span, last.span))
-            elif is_place(phrase) or phrase.pronoun in ("it", "they", "this") or phrase.members:
+            elif (
+                (is_place(phrase) and not _is_group(phrase))
+                or phrase.pronoun in ("it", "they", "this")
+                or phrase.members
+            ):
                 extra += tuple(mods)
             else:
                 phrase = _restricted(phrase, mods)
@@ -262,6 +266,7 @@ class Builder(Transformer[Any, Built]):
         first = members[0]
         if (
             is_place(first)
+            and not (_is_group(first) and any(member.determiner is not None for member in members[1:]))
             and first.of is not None
             and not any(is_place(m) and m.head in DIRECTION_WORDS for m in members[1:])
         ):
@@ -361,6 +366,13 @@ class Builder(Transformer[Any, Built]):
         if aims and last_word(phrase.head) in PARTS:  # 'the handle of the spoon pointing to the right'
             inner = replace(inner, predicates=tuple(p for p in inner.predicates if p not in aims))
             its = (*aims, *its)
+        kind = last_word(phrase.head) in _KINDS and inner.head and inner.determiner is None and inner.count is None
+        if kind and not inner.members and phrase.owner is None:  # 'any type of napkin'
+            plural = inner.plural or phrase.determiner in ("any", "all", "several")
+            return replace(inner, plural=plural, span=union(phrase.span, inner.span), predicates=inner.predicates)
+        if phrase.head in _RESTS and phrase.owner is None and inner.head and not inner.members:
+            others = Adjective("remaining", "other", Degree.PLAIN, phrase.span)
+            return replace(inner, adjectives=(others, *inner.adjectives), span=union(phrase.span, inner.span))
         if not phrase.head and phrase.pronoun is None and phrase.determiner in _QUANTIFIERS and inner.head:
             return replace(inner, plural=True, span=union(phrase.span, inner.span))  # 'most of the knives'
         if phrase.head.rpartition(" ")[2] in _AMOUNTS and inner.head and not inner.owner and inner.determiner is None:
@@ -534,7 +546,9 @@ class Builder(Transformer[Any, Built]):
             rest = tuple(p for p in noun.phrase.predicates if p is not hour)
             noun = Noun(replace(noun.phrase, predicates=rest), extra)
             extra = (*extra, replace(hour, arguments=(noun.phrase,)))
-        if relation == "material" and (noun.phrase.members or noun.phrase.determiner in ("a", "an", "the", "no")):
+        things = noun.phrase.count is not None or (noun.phrase.plural and noun.phrase.head not in SUBSTANCES)
+        named = noun.phrase.members or noun.phrase.determiner in ("a", "an", "the", "no") or things
+        if relation == "material" and named:  # 'made up of four sections'
             misunderstood(span, "this says which things belong together, not where they are")
             return extra  # 'a set consisting of a fork and a knife'
         if relation == "material":
@@ -557,6 +571,7 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)  # 'in a festive meal', 'at one time'
         manner = relation == "by" and noun.phrase.head in _MANNERS
+        ruled = relation == "by" and noun.phrase.head in _RULES and noun.phrase.determiner == "the"
         unmarked = noun.phrase.determiner is None and noun.phrase.owner is None and noun.phrase.count is None
         if relation in ("by", "at") and unmarked and not noun.phrase.known and not noun.phrase.adjectives:
             misunderstood(span, f"'{noun.phrase.head}' is not a place")  # 'by contrast', 'at dusk'
@@ -571,7 +586,7 @@ class Builder(Transformer[Any, Built]):
         idle = idle or (known_place and not noun.phrase.predicates)
         idle = idle or (relator.preposition.phrase == "before" and single and noun.phrase.count is None)
         idle = idle and noun.phrase.owner is None  # 'on display', but 'above your display'
-        if idle or (plain and manner):
+        if idle or (plain and manner) or ruled:
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
         if relation == "-":
@@ -1031,6 +1046,10 @@ _FASTENING = word_set(
     " mount install hold affix anchor hook lower raise lift pull drag turn spread pour stick scoop lock"
 )
 """Commands in which *with* names a tool: *secure it with two bolts*."""
+_KINDS = word_set("type kind sort variety assortment selection range choice")
+"""Nouns of what the things after *of* are like or how many they are: *a selection of cheeses*."""
+_RESTS = frozenset({"rest", "remainder", "bulk"})
+"""Nouns of what is left of the things after *of*: *the rest of the spoons*."""
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
 _OF_ITS_OWN = frozenset({"upside_down", "on", "inside"})
 """Relations that a relative clause states of its noun, and that a phrase may state of the subject before."""
@@ -1059,6 +1078,8 @@ _OCCASIONS = word_set(
     "meal dinner lunch breakfast supper luncheon brunch concert performance ceremony wedding rehearsal time interval"
 )
 """Nouns of what lasts or comes again, which nothing is in: *in a formal dinner*, *at equal intervals*."""
+_RULES = frozenset({"rule", "law", "custom", "tradition", "method", "principle", "book"})
+"""Nouns after which *by the* says how: *divide the desk by the rule of thirds*."""
 _MANNERS = word_set(
     "value price brand theme subject author mistake default law tradition custom rule accident chance colour color size"
     " hand name age height type kind length weight shape date number order"
@@ -1079,6 +1100,11 @@ _ALIGNING = frozenset({"parallel", "perpendicular", "aligned", "level_with"})
 
 _SHARED_FROM = frozenset({"around", "middle"})
 """Other relations whose object belongs to a place before them as well: *on or around X*, *above and in the middle*."""
+
+
+def _is_group(phrase: NounPhrase) -> bool:
+    """Return True for *a stack of books*, which names things and not their place."""
+    return arrangement_of(phrase) is not None and phrase.of is not None
 
 
 def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tuple[Predicate, ...]]]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
-from deixis.grammar.english.clauses.places import is_place
+from deixis.grammar.english.clauses.places import arrangement_of, is_place
 from deixis.grammar.english.clauses.rewriting.editing import type_at
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.function_words import PERSONS
@@ -800,7 +800,7 @@ def _kind(
             and len(found) > 1
             and found[-2].type == "PREP"
             and is_place(found[-1].value)
-            and (not is_place(source[end].value))
+            and (not is_place(source[end].value) or _is_group(source, end))
         ):
             return "OJ"
         return "NJ"
@@ -809,6 +809,12 @@ def _kind(
     if place_first and not fronted and kinds == {"COMMA"} and after in PREDICATES and _subject_later(types, end):
         return "PJ"
     return "PJ"
+
+
+def _is_group(source: list[Chunk], at: int) -> bool:
+    """Return True for *a stack of books* and *a row of cups*, which name things and not their place."""
+    named = arrangement_of(source[at].value) is not None and source[at].value.determiner is not None
+    return named and [chunk.type for chunk in source[at + 1 : at + 3]] == ["OF", "NP"]
 
 
 def _subject_later(types: list[str], at: int) -> bool:

@@ -39,6 +39,8 @@ _SIDES = ("left", "right", "top", "bottom", "front", "back", "far", "near", "mid
 _BINARY = {"front": "in_front", "back": "behind"}
 HOURS = {12: "top", 3: "right", 6: "bottom", 9: "left", 1: "top_right", 2: "top_right", 4: "bottom_right",
           5: "bottom_right", 7: "bottom_left", 8: "bottom_left", 10: "top_left", 11: "top_left"}  # fmt: skip
+_FLAT = frozenset({"door", "lid", "wall", "window", "flap", "cover", "panel", "screen", "shutter", "gate"})
+"""Nouns of flat things, whose inside is the side that faces in."""
 _STARTS = frozenset({"start", "beginning"})
 """Nouns of the end of a thing at which people come to it first: *at the start of the buffet*."""
 _ON = frozenset({"on", "inside", "at", "to", "along"})
@@ -157,7 +159,8 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
             kind = "middle"
         return _made(relator, kind, arguments, span, part=part, viewpoint=own)
     if kind in ("inside", "outside"):
-        return _made(relator, kind, arguments, span)
+        flat = bool(arguments) and all(last_word(argument.head) in _FLAT for argument in arguments)
+        return _made(relator, "on" if flat else kind, arguments, span)  # 'on the inside of the door'
     return _direction(relator, (*sides, *kind.split()), arguments, span, own, superlative)
 
 

@@ -93,6 +93,13 @@ _PASSIVES = {
     "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
 }  # fmt: skip
 """Relation of the agent of a participle to its subject: *surrounded by cups*."""
+_TREATING = word_set(
+    "wash rinse clean wipe polish dry scrub brush sweep dust rub mop sponge bathe cut slice chop carve peel open close"
+    " shut seal secure fix fasten tie mark paint varnish oil grease glue sand treat spray cook heat boil burn warm cool"
+    " make build construct create shape use compare associate replace mix blend combine stir pair match eat drink serve"
+    " test check measure adjust tighten loosen move lift deal confuse connect concern"
+)
+"""Verbs after which *with* names a means or a companion, and not what a thing holds: *washed with soap*."""
 _EXTENDING = frozenset({"reach", "extend", "stretch"})
 """Verbs after which a direction without an object is where a thing points: *its branches reach to the left*."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
@@ -607,6 +614,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "facing"  # 'its opening turned to the fire'
     elif lemma == "fill" and relation in ("part", "top") and not any(a.startswith("at") for a in following.adverbs):
         relation = "through"  # 'filled to the top'
+    elif relation == "with" and not _TREATING.isdisjoint((lemma, lemma.removesuffix("ed"), lemma.removesuffix("d"))):
+        relation = "through"  # 'washed with soap'
     elif relation == "through" and lemma in _PASSING:
         relation = "inside"  # 'the bolt goes through the hole'
     elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):

@@ -82,7 +82,11 @@ REVOKED = re.compile(
 """End of a sentence that takes back what it said: *…, but we don't*."""
 _PUTTING = (
     "placing|putting|laying|positioning|arranging|keeping|storing|installing|mounting|attaching|adding|moving|stacking"
+    "|having|leaving|setting|inserting|fixing|aiming|directing|centring|centering|locating|situating|spreading|tucking"
 )
+_POSING = "hanging|standing|leaning|resting|folding|rolling|turning|pointing|facing|angling|tilting|balancing|stringing"
+"""Participles that stand before nouns as well: *hanging lamps*."""
+_PREPOSITIONS = "on|in|into|onto|at|under|next|behind|above|over|below|beside|near|against|between|from|by|to|towards?"
 UNREAL = re.compile(
     r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
     r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather|sooner)\b"
@@ -137,9 +141,10 @@ UNREAL = re.compile(
     r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
     r"|\bin\s+(?:the|this|that|a)\s+(?:picture|photo(?:graph)?|painting|film|story|novel|dream)\s*[.!]?$"
     r"|\b(?:is|are)\s+due\s+(?:on|in|at|under|behind|next|back)\b"
-    rf"|^\s*(?:{_PUTTING})\s+(?!on|in|at|under|next|behind)[^,;:.]*?\b(?:is|are|was|can|may|will|would|makes?|gives?|creates?|means?)\b"
+    rf"|^\s*(?:{_PUTTING})\s+(?!(?:{_PREPOSITIONS})\b)[^,;:.]*?\b(?:is|are|was|can|may|will|would|makes?|gives?|creates?|means?)\b"
     r"(?!\s+(?:also\s+|often\s+|usually\s+)?(?:an?\s+|the\s+)?(?:good|great|best|better|ideal|important|helpful|useful"
     r"|convenient|easiest|safest|essential|key|perfect|help|save|keep|allow|ensure|reduce|free|protect)\b)"
+    rf"|^\s*(?:{_POSING})\s+(?!(?:{_PREPOSITIONS})\b)[^,;:.]*?\s(?:{_PREPOSITIONS})\s[^,;:.]*?\b(?:is|was|makes|gives|creates|means)\b"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )

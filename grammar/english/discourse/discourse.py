@@ -50,6 +50,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     HOLDERS,
     PARTS,
     PEOPLE,
+    PLACES_OF,
     REMOVABLE,
     SURFACES,
     VIEWER_WORDS,
@@ -120,6 +121,23 @@ def _is_moved(clause: Clause, subject: NounPhrase) -> bool:
     return commanded and not any(p.relation in ("pointing", "facing") for p in clause.predicates)
 
 
+def _shown(clause: Clause) -> NounPhrase | None:
+    """Return the thing of *this is the closet in my room*, which shows it and is not about what was named before."""
+    subject, predicates = clause.subject, clause.predicates
+    pointing = subject is not None and subject.pronoun in ("this", "these") and not subject.head
+    if not pointing or len(predicates) != 1 or predicates[0].relation != "kind" or not predicates[0].positive:
+        return None
+    phrases = predicates[0].arguments
+    if len(phrases) != 1 or not phrases[0].head or phrases[0].head in PLACE_NOUNS or phrases[0].head in PLACES_OF:
+        return None
+    definite = phrases[0].determiner == "the" or phrases[0].owner is not None
+    return phrases[0] if definite and phrases[0].predicates and phrases[0].of is None else None
+
+
+_FORBIDDING = re.compile(r"\s*(?:do\s+not|don['\u2019]t|never|avoid)\b", re.IGNORECASE)
+"""Beginning of a sentence that forbids something."""
+_EXCEPTED = re.compile(r"[;:\u2014]|\b(?:but|instead|rather|except|only|just|then|unless|until)\b", re.IGNORECASE)
+"""Words after which such a sentence says what to do."""
 _UNREAL = (UNREAL.search, SAID_AFTER.search, FRAMED.search, UNSURE.search, FUTURE.match)
 """Searches for words by which nothing in a sentence is asserted."""
 
@@ -168,7 +186,10 @@ class Discourse(Statements):
         return self.drafts
 
     def _other_viewpoint(self, sentence: Sentence) -> str | None:
-        """Return the words by which a sentence speaks from another place than the viewer's: *seen from the door*."""
+        """Return the words by which a sentence speaks from another place than the viewer's: *seen from the door*.
+
+        A sentence that only states a viewpoint states that of the whole text.
+        """
         at = None if sentence.viewpoint is None else sentence.viewpoint.at
         if sentence.viewpoint is None or at is None or not at.head:
             return None
@@ -176,6 +197,10 @@ class Discourse(Statements):
         here = owner is not None and owner.pronoun in VIEWER_WORDS and not owner.head
         if here or last_word(at.head) in PEOPLE | {"viewer"}:
             return None  # 'from my side of the table'
+        if self.seen_from is None and not sentence.clauses and sentence.fragment is None:
+            self.seen_from = at.head  # 'The table is seen from the door.'
+        if at.head == self.seen_from:
+            return None
         return " ".join(self.text[slice(*sentence.viewpoint.span)].strip(" ,").split())
 
     def _focus_on_label(self, number: int) -> None:
@@ -323,6 +348,9 @@ class Discourse(Statements):
             return
         if clause.mood is Mood.STATEMENT and clause.condition is not None and not is_condition(clause.condition):
             clause = replace(clause, condition=None)
+        shown = _shown(clause)
+        if shown is not None:
+            clause = replace(clause, subject=replace(shown, predicates=()), predicates=shown.predicates)
         modal = clause.modal
         denied = tuple(p for p in clause.predicates if not p.positive)
         if modal in UNCERTAIN and clause.positive and 0 < len(denied) < len(clause.predicates):
@@ -412,6 +440,10 @@ class Discourse(Statements):
             unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
         bounds = AT_MOST.finditer(self.text, self.references.start, clause.span[1])
         unreal = unreal or next((match for match in bounds if match.end() > clause.span[0]), None)
+        forbidden = _FORBIDDING.match(self.text, self.references.start)
+        if positive and forbidden and _EXCEPTED.search(self.text, forbidden.end(), max(0, clause.span[0])) is None:
+            lost = any(forbidden.end() <= start <= clause.span[0] for start, _ in self.references.lost)
+            unreal = unreal or (forbidden if lost else None)  # 'do not put soiled, chipped or bent knives on it'
         if (unreal and positive) or SELDOM.search(self.text[slice(*clause.span)]):
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         if not clause.predicates and not clause.choices and not clause.existential:

@@ -75,6 +75,9 @@ TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct|open)\w*\s+(?:\w+
 """Directions that are denied: *pointing away from the plate*."""
 
 
+_STOREY = re.compile(r"\b(?:top|bottom|upper|lower|middle|first|second|third|highest|lowest|next)\b", re.IGNORECASE)
+"""Words by which a level is a storey of a thing, and not a height: *the top level of the altar*."""
+
 SEEN_FROM_A_SIDE = frozenset(
     {"left", "right", "top", "bottom", "top_left", "top_right", "bottom_left", "bottom_right", "in_front", "behind"}
 )
@@ -112,6 +115,7 @@ class Drafting:
         self.unreal: re.Match[str] | None = None  # words by which the sentence asserts nothing
         self.reports = False  # True for a sentence that tells what a person says
         self.elsewhere: str | None = None  # words of the sentence by which another place than the viewer's is meant
+        self.seen_from: str | None = None  # noun of the viewpoint that a sentence of its own states for the text
         self.titled: tuple[Predicate, ...] = ()  # place that the last heading names
         self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
         tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]
@@ -180,7 +184,10 @@ class Drafting:
     def _is_no_thing(self, entity: Entity) -> bool:
         """Return True for an object whose name says that it is a quality, an act, a time, or a piece of a clause."""
         storey = entity.noun == "level" and any(d in ("position", "rank") for d, _ in entity.adjectives)
-        return entity.role is Role.THING and not storey and not can_have_a_place(entity.noun, self.nouns)
+        storey = storey or (entity.noun == "level" and any(_STOREY.search(mention) for mention in entity.mentions))
+        matter = entity.noun == "thing" and not entity.plural and entity.group is None  # 'the thing to do is …'
+        unnamed = matter or not can_have_a_place(entity.noun, self.nouns)
+        return entity.role is Role.THING and not storey and unnamed
 
     def _compare(self, relation: str, subject: Entity, other: Entity, phrase: NounPhrase) -> None:
         how = Qualification(phrase.span, self.references.sentence)

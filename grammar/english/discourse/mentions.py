@@ -27,10 +27,14 @@ from deixis.grammar.english.vocabulary.nouns import (
     last_word,
 )
 from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.things import can_have_a_place
 from deixis.ontology.graph.claims import PLACES
 
 VERB_AFTER = re.compile(r"\s+(?:is|are|was|were|has|have|must|should|can|may|will)\b", re.IGNORECASE)
 """Verb after a noun phrase, without which it tells how the thing before it is: *its flap opening away from you*."""
+
+SIDE_OF = re.compile(r"\b(?:side|half|end|edge|corner|part|section|third|quarter)\s+of\s+$", re.IGNORECASE)
+"""Words before a thing whose part is meant: *on the left side of the desk*."""
 
 SUPERLATIVES = {
     ("size", 1): "largest", ("size", -1): "smallest", ("height", 1): "tallest", ("height", -1): "shortest",
@@ -51,6 +55,12 @@ def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
         return phrase
     bare = replace(of, predicates=(), span=(of.span[0], max(of.span[0], of.predicates[0].span[0])))
     return replace(phrase, of=bare, predicates=(*phrase.predicates, *of.predicates))
+
+
+def _is_beside_part(phrase: NounPhrase, of: NounPhrase) -> bool:
+    """Return True for a place after a part of a known thing, which is the place of what is at the part."""
+    beside = all(p.relation in _BESIDE | {"above", "below"} and p.arguments and not p.reversed for p in of.predicates)
+    return beside and last_word(phrase.head) in PARTS and of.determiner == "the"
 
 
 def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
@@ -76,10 +86,15 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
         p.relation == "with" and all(a.predicates and last_word(a.head) not in PARTS for a in p.arguments)
         for p in phrase.predicates
     )  # 'in front of the guest with a fork on the left'
+    flanked = entity.role is Role.SURROUNDING and all(
+        p.relation == "with" and all(any(q.relation == "each_side" for q in a.predicates) for a in p.arguments)
+        for p in phrase.predicates
+    )  # 'against the wall with a lamp on either side'
     measured = entity.role is Role.SURFACE and all(p.relation.startswith("distance") for p in phrase.predicates)
     return (
         (around and bare)
         or measured
+        or flanked
         or on_it
         or spots
         or (wide and (bare or beside))
@@ -162,6 +177,10 @@ class Mentions(Drafting, ABC):
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
         phrase = _with_restrictions_of_contents(phrase)
         of = phrase.of
+        if of is not None and of.predicates and besides is not None and _is_beside_part(phrase, of):
+            self._say(besides, of.predicates, phrase, focus=False)  # 'on the base of the stand below the burner'
+            of = replace(of, predicates=())
+            phrase = replace(phrase, of=of)
         arranged = phrase.head in ARRANGEMENTS and phrase.count is None and not (phrase.plural or phrase.adjectives)
         if arranged and of is not None and of.head and of.plural and self.references.earlier(phrase) is None:
             return self._arrange(phrase, replace(of, predicates=()), relation, besides)
@@ -189,10 +208,15 @@ class Mentions(Drafting, ABC):
         carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
         if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
             self._say(besides, phrase.predicates, phrase, focus=False)
+        held = (
+            "on"
+            if relation in PLACES or SIDE_OF.search(self.text, max(0, phrase.span[0] - 24), phrase.span[0]) is not None
+            else relation
+        )
         outside = tuple(
             p for p in phrase.predicates
             if besides is not None and (
-                (not new and self._bears(entity, p)) or _shares_support(phrase, relation, p)
+                (not new and self._bears(entity, p)) or _shares_support(phrase, held, p)
                 or _is_packed(phrase, relation, p)
                 or (p.relation == "opposite" and relation in ("in_front", "behind") and len(p.arguments) == 1)
             )  # 'put it in front of the chair on the opposite side of the lamp'
@@ -289,6 +313,10 @@ class Mentions(Drafting, ABC):
             stuff = phrase.of.head
             vessel = last_word(phrase.head) in VESSELS
             filled = vessel and (stuff in _LOOSE or not is_material_noun(last_word(stuff)))
+            filled = filled and can_have_a_place(stuff, self.nouns)  # not 'jars of different sizes'
+            filled = filled and (
+                phrase.of.determiner != "the" or stuff in SUBSTANCES
+            )  # not 'the last glass of the row'
             if is_material_noun(stuff) and not filled and not phrase.of.determiner:  # 'a jug of green glass'
                 self._add("material", (entity,), (), value=stuff, how=plain)
                 for adjective in phrase.of.adjectives:
@@ -382,6 +410,7 @@ class Mentions(Drafting, ABC):
         if (phrase.pronoun in ("each", "other") and phrase.determiner in ("each",)) or phrase.pronoun == "another":
             return None
         owned = phrase.owner is not None and phrase.head and last_word(phrase.head) not in PARTS and not phrase.plural
+        owned = owned and phrase.owner is not None and phrase.owner.pronoun not in VIEWER_WORDS | {"we"}  # 'your sofa'
         if owned and subject is not None and subject.itself.members and self.how.quantifier == "each":
             return self._introduce(replace(phrase, owner=None, determiner=None, count=subject.size, plural=True))
         if (
@@ -409,6 +438,8 @@ def _shares_support(phrase: NounPhrase, relation: str | None, predicate: Predica
     """
     named = phrase.determiner == "the" or phrase.owner is not None
     person = len(predicate.arguments) == 1 and last_word(predicate.arguments[0].head) in PEOPLE
+    seats = len(predicate.arguments) == 1 and last_word(predicate.arguments[0].head) in _SEATS
+    person = person or (seats and predicate.arguments[0].determiner in ("each", "every"))
     if person and named and predicate.relation in ("in_front", "near", "next_to") and relation in ("on", "inside"):
         return True  # 'on the tray in front of the guest'
     if relation != "on" or not named or phrase.plural or last_word(phrase.head) not in _SUPPORTS_OF_SEVERAL:
@@ -430,6 +461,8 @@ def _is_packed(phrase: NounPhrase, relation: str | None, predicate: Predicate) -
     return named and bare and last_word(vessel.head) in VESSELS | HOLDERS
 
 
+_SEATS = frozenset({"chair", "seat", "stool", "place", "setting", "cover"})
+"""Nouns of what stands at a table for one person: *on the table in front of each chair*."""
 _NEXT_TO = frozenset({"next_to", "near", "in_front", "behind", "left", "right"})
 _SUPPORTS_OF_SEVERAL = word_set(
     "desk table tabletop counter countertop worktop bench workbench board shelf sideboard dresser stage"

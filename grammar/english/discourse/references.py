@@ -409,6 +409,9 @@ class References:
             return self._remaining(phrase, latest_first)
         if self._is_ambiguous(phrase, latest_first):
             return None
+        beside = {e.noun for e in latest_first if e.noun != phrase.head and e.noun.partition(" ")[0] in _SIDE_DISHES}
+        if phrase.head in ("plate", "bowl") and len(beside) > 1 and len(beside) == len({e.noun for e in latest_first}):
+            return None  # 'the plate' after 'the bread plate' and 'the salad plate'
         comparative = any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
         general = phrase.plural and phrase.determiner is None and phrase.owner is None and comparative
         if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
@@ -419,6 +422,7 @@ class References:
                 not phrase.plural and phrase.determiner == "the" and entity.plural and not entity.single
                 and entity.born < self.sentence and entity.noun == phrase.head and not _agreement(entity, phrase),
                 entity.compared,
+                entity.noun != phrase.head and entity.noun in beside,
                 phrase.head not in (entity.noun, *entity.aliases) and not entity.was_called(phrase.head),
                 -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
@@ -435,7 +439,12 @@ class References:
                 continue
             alone = not (entity.members or entity.plural or entity.single or entity.group is not None)
             named = entity.noun == phrase.head or phrase.head in entity.aliases or entity.was_called(phrase.head)
-            if alone and phrase.plural and phrase.count is None and not named:
+            if (
+                alone
+                and phrase.plural
+                and phrase.count is None
+                and (not named or entity.noun.endswith(f" {phrase.head}"))
+            ):
                 continue  # 'the drums' after 'the bass drum'
             every = phrase.determiner in ("each", "every") or any(a.rank is not None for a in phrase.adjectives)
             if (
@@ -462,7 +471,7 @@ class References:
                 coloured & leaf.adjectives for leaf in entity.leaves()
             ):  # fmt: skip
                 continue  # 'the white pieces' after '12 pieces'
-            if _is_one_of_a_kind(phrase, entity):
+            if _is_one_of_a_kind(phrase, entity) or _are_placed_apart(phrase, entity):
                 continue
             if general and not _agreement(entity, phrase) - bool(entity.members or entity.plural):
                 continue  # 'larger items' after 'sale items'
@@ -607,8 +616,8 @@ class References:
         if apart and free and not phrase.plural and phrase.head and phrase.determiner == "the":
             return self.picked(free[0], phrase)  # 'the post nearest the door'
         for adjective in phrase.adjectives:
-            if adjective.dimension == "position" and adjective.word in _MIDDLES and len(leaves) % 2 and len(leaves) > 1:
-                return self.picked(leaves[len(leaves) // 2], phrase)
+            if adjective.dimension == "position" and adjective.word in _MIDDLES and len(leaves) > 1:
+                return self.picked(leaves[len(leaves) // 2], phrase) if len(leaves) % 2 else None
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
                 return self.picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
             tag = _tag(adjective)
@@ -849,7 +858,9 @@ class References:
                     entity.adjectives = {("colour", c) for c in colours}
                     self.entities.append(entity)
                     return self._seen(entity, phrase)
-        if group is None and (contrasted := self._contrasted(phrase)) is not None:
+        pair = self.last_group(besides) if phrase.pronoun == "one" else None
+        pair = pair if pair is not None and pair.size == 2 and self._is_fresh(pair) else None  # 'two shelves: …'
+        if group is None and pair is None and (contrasted := self._contrasted(phrase)) is not None:
             return contrasted
         ordered = phrase.adjectives and all(a.dimension in ("rank", "position", "height") for a in phrase.adjectives)
         alone = phrase.pronoun is None and phrase.determiner == "the" and not phrase.plural and phrase.of is None
@@ -899,6 +910,9 @@ class References:
             kinds = phrase.pronoun == "one" and phrase.plural and bool(phrase.adjectives) and not phrase.determiner
             if kinds and many is not None and many.plural and many.noun and many.role is Role.THING:
                 return self._new(replace(phrase, head=many.noun, pronoun=None), Role.THING)  # 'and used ones'
+            told = any(a.dimension in ("state", "other") for a in phrase.adjectives) and phrase.pronoun == "one"
+            if told and phrase.plural and besides is not None and besides.plural and besides.noun:
+                return self._new(replace(phrase, head=besides.noun, pronoun=None), besides.role)  # 'above fragile ones'
             return self._another_one(phrase, besides, relation)
         if ranks and min(ranks) > group.size and group.noun and phrase.of is None:
             return self._new(
@@ -1123,6 +1137,14 @@ def _can_name(head: str, entity: Entity) -> bool:
     return any(noun.split()[-len(words) :] == words for noun in (entity.noun, *entity.aliases))
 
 
+_SIDE_DISHES = frozenset({"bread", "salad", "side", "dessert", "butter", "soup", "cake", "rice", "finger", "pie"})
+"""First words of plates and bowls beside the one that *the plate* means."""
+_CORRESPONDING = frozenset(
+    {"corresponding", "respective", "appropriate", "designated", "provided", "indicated", "proper", "empty", "adjacent"}
+)
+"""Adjectives of a thing that the text tells by what it is for, and not by a name before."""
+
+
 def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
     """Return True for *the back door* after *the pantry door*: the longer name has no side.
 
@@ -1133,6 +1155,8 @@ def _is_told_apart(phrase: NounPhrase, entity: Entity) -> bool:
         if a.dimension in ("position", "colour", "material", "size") and a.degree is Degree.PLAIN
     }  # fmt: skip
     longer = " " in entity.noun and entity.noun != phrase.head and not entity.was_called(phrase.head)
+    if longer and any(a.word in _CORRESPONDING for a in phrase.adjectives):
+        return True
     if (
         not longer
         or not distinguishing
@@ -1181,6 +1205,14 @@ def _marks(phrase: NounPhrase) -> set[tuple[str, str]]:
         if predicate.relation == "ordinal" and predicate.value is not None and not predicate.reversed:
             marks.add(("ordinal", f"{predicate.value.rank} from {predicate.part}"))
     return marks
+
+
+def _are_placed_apart(phrase: NounPhrase, entity: Entity) -> bool:
+    """Return True for things that a position tells from those before: *the rear speakers* after *two speakers*."""
+    places = {("position", a.word) for a in phrase.adjectives if a.dimension == "position" and a.degree is Degree.PLAIN}
+    if not places or not phrase.plural or phrase.count is not None or not (entity.members or entity.plural):
+        return False
+    return not any(places & leaf.adjectives for leaf in (entity, *entity.leaves()))
 
 
 def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:

@@ -61,8 +61,12 @@ _MUTUAL = {"next_to": "near", "against": "touching"}
 
 _PARTS_OF_PAIRS = {
     ("top", "below"): "bottom", ("bottom", "above"): "top", ("left", "right"): "right", ("right", "left"): "left",
+    ("back", "in_front"): "front", ("front", "behind"): "back", ("far", "in_front"): "near", ("near", "behind"): "far",
 }  # fmt: skip
 """Part of the second of two things by the part of the first and the direction of the second."""
+
+_QUALITIES = frozenset({"size", "colour", "material", "shape", "state", "count", "kind", "height", "length", "surface"})
+"""Relations of drafts that say no place."""
 
 _ONE_BY_ONE = {"one behind": "behind", "one in front": "in_front"}
 """Relation of the first of two things to the second by the words for a row."""
@@ -85,7 +89,25 @@ _LATERAL = frozenset({"left", "right"})
 """Relations after which *the other side* of a thing is the opposite one."""
 
 
-_ON_A_SIDE = re.compile(r"\b(?:on|at)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
+_STUFFS = word_set(
+    "oak pine walnut maple cherry birch beech teak mahogany bamboo steel brass copper bronze chrome aluminium aluminum"
+    " leather velvet linen cotton silk wool denim canvas marble granite porcelain acrylic plastic vinyl nylon polyester"
+)
+
+
+def _is_stuff(phrase: NounPhrase) -> bool:
+    """Return True for a material without an article and without a number: *oak* of *a chair in oak*."""
+    bare = phrase.determiner is None and phrase.owner is None and phrase.count is None and not phrase.plural
+    return bare and phrase.of is None and not phrase.members and last_word(phrase.head) in _STUFFS
+
+
+_WIDE = word_set(
+    "table desk bench workbench worktop counter countertop sideboard dresser shelf board pegboard whiteboard stage tray"
+    " rack wall bar buffet altar trolley cart"
+)
+"""Nouns of what carries or shows many things, each of which can be on one side of it."""
+
+_ON_A_SIDE = re.compile(r"\b(?:on|at|to)\s+the\s+(?:[\w-]+\s+)*side\s+of\b")
 """Words by which a side is a part of the surface, and not a direction from it."""
 
 
@@ -135,6 +157,11 @@ class Relations(Mentions):
         single = subject.size == 1 and not subject.plural
         if relation == "each_side" and single and self.how.optional:
             relation = "next_to"  # 'the pump can stand on either side of the sink'
+        if relation == "each_side" and not predicate.arguments:
+            flanked = self._flanked(subject)
+            if flanked is not None:
+                self._pair(subject, relation, flanked, False)  # 'the mirror is here, with a light on each side'
+            return
         forms = all(last_word(a.head) in _FORMS and a.determiner not in ("the", "each") for a in predicate.arguments)
         into = self.text[slice(*predicate.span)].casefold().startswith("into")
         if into and relation == "inside" and predicate.arguments and forms:
@@ -145,6 +172,9 @@ class Relations(Mentions):
         degree = self.text[self.references.start : predicate.span[0]].casefold().split()[-1:]
         if relation in ("near", "far") and degree in (["equally"], ["as"]):
             return  # 'equally far from the cross' compares, and says no distance
+        stuffs = [_is_stuff(a) for a in predicate.arguments]
+        if relation == "inside" and not predicate.reversed and stuffs and all(stuffs):
+            return  # 'a chair in oak', which says what it is made of
         if relation == "outside":
             hollow = all(last_word(a.head) in VESSELS | HOLDERS for a in predicate.arguments)
             if predicate.arguments and hollow and self.how.positive and not predicate.reversed:
@@ -241,6 +271,10 @@ class Relations(Mentions):
         if regions and not entities:
             self._at_region(subject, relation, regions[0])
             return
+        if predicate.reversed and self._holds_inside(subject, predicate):
+            for thing in entities:  # 'the drawer has knives in front and forks in back'
+                self._add("part", (thing,), (subject,), value={"in_front": "front"}.get(relation, "back"))
+            return
         if relation == "between":
             if predicate.reversed:  # 'the comb and the razor, with a necklace between them'
                 both = [subject, *others[:1]] if subject.size == 1 and not subject.plural else [subject]
@@ -280,13 +314,36 @@ class Relations(Mentions):
                 )
             return
         written = self.text[slice(*predicate.span)].casefold()
+        timed = relation == "in_front" and written.startswith("before ") and self.how.positive
+        if timed and any(entity.role is Role.THING for entity in entities):
+            self.how = self._guessed(Guess.BEFORE)  # 'put the knives out before the forks'
         on_a_side = relation in _LATERAL and not predicate.reversed and _ON_A_SIDE.search(written) is not None
         on_a_side = on_a_side and subject.role is not Role.SURFACE and last_word(subject.noun) not in FURNITURE
         for other in entities:
             if on_a_side and other.role is Role.SURFACE:
                 self._add("part", (subject,), (), value=relation)  # 'on the left side of the tray'
+            elif on_a_side and last_word(other.noun) in _WIDE and other.role is Role.THING and not other.members:
+                self._add("part", (subject,), (other,), value=relation)
             else:
                 self._pair(subject, relation, other, predicate.reversed)
+
+    def _holds_inside(self, subject: Entity, predicate: Predicate) -> bool:
+        """Return True for *in front* and *in back* after what a drawer or a shelf has, which are parts of it."""
+        words = self.text[slice(*predicate.span)].casefold()
+        bare = re.search(r"\bin (?:front|back)\b(?!\s+of\b)", words) is not None
+        holder = last_word(subject.noun) in HOLDERS | VESSELS | SURFACES and subject.role is Role.THING
+        return predicate.relation in ("in_front", "behind") and bare and holder
+
+    def _flanked(self, subject: Entity) -> Entity | None:
+        """Return the thing that *on each side* is about: the subject before, of this sentence or the last one."""
+        before = [f for f in self.references.recent if f.subject is not None and f.subject.itself is not subject.itself]
+        if not before or before[0].sentence < self.how.sentence - 1 or not self.how.positive:
+            return None
+        thing = before[0].subject
+        if before[0].sentence != self.how.sentence:
+            self.how = self._guessed(Guess.OF_EARLIER)
+        single = thing is not None and thing.role is Role.THING and not (thing.itself.members or thing.plural)
+        return thing if single else None
 
     def _host_of(self, phrase: NounPhrase, relation: str, subject: Entity) -> Entity | None:
         """Return the thing before, of which *the rim* is: *the plate is here, with a knife across the rim*."""
@@ -542,6 +599,15 @@ class Relations(Mentions):
         if contrasted is not None:
             self._pair(subject, predicate.relation, contrasted, False)
             return
+        shared = self._of_what_follows(predicate)
+        if shared:
+            self._relate(subject, replace(predicate, arguments=shared, part=None), [])
+            return
+        sided = self.drafts[-1] if self.drafts else None
+        of_sides = sided is not None and sided.relation == "part" and sided.how.sentence == self.how.sentence
+        if sided is not None and of_sides and sided.arguments and sided.value == OPPOSITES.get(predicate.relation):
+            self._add("part", (subject,), sided.arguments, value=predicate.relation)
+            return  # 'pens on the left side of the board and pins on the right'
         across = self._side_of(subject, predicate)
         if across is not None:
             self.how = self._guessed(Guess.OF_THE_LAST)
@@ -569,11 +635,15 @@ class Relations(Mentions):
             and not GROUNDS.search(self.text[slice(*predicate.span)])
         ):
             before = next(f for f in self.references.recent if f.subject is not subject)
-            stated = self.drafts[-1] if self.drafts else None
-            level = stated.value if stated is not None and stated.relation == "part" and not stated.arguments else None
+            placed = [
+                d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation not in _QUALITIES
+            ]  # not 'small' of 'small pots in front'
+            stated = placed[-1] if placed and placed[-1].relation in ("part", "middle") else None
+            levels = [d.value for d in placed if d.relation == "part"]
+            level = levels[-1] if levels and stated is not None else None
             part = _PARTS_OF_PAIRS.get((level or "", predicate.relation))
-            if part is not None and stated is not None and stated.how.sentence == self.how.sentence:
-                self._add("part", (subject,), (), value=part)  # 'forks left, knives right'
+            if part is not None and stated is not None:
+                self._add("part", (subject,), stated.arguments, value=part)  # 'forks left, knives right'
                 return
             opposite = OPPOSITES.get(before.relation or "") == predicate.relation
             if before.others and (opposite or before.relation == "on") and before.others[0].role is Role.THING:
@@ -604,6 +674,21 @@ class Relations(Mentions):
         value = value.replace("_", " ")
         if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
             self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _of_what_follows(self, predicate: Predicate) -> tuple[NounPhrase, ...]:
+        """Return the thing of which the next clause says the other side: *A to the left and B to the right of C*."""
+        clauses = self.sentences[self.how.sentence].clauses
+        following = next((c for c in clauses if c.span[0] >= predicate.span[1]), None)
+        if following is None or OPPOSITES.get(predicate.relation) not in DIRECTIONS or not self.how.positive:
+            return ()
+        return next(
+            (
+                p.arguments for p in following.predicates
+                if p.relation == OPPOSITES[predicate.relation] and p.positive and len(p.arguments) == 1
+                and p.arguments[0].head and not p.reversed
+            ),
+            (),
+        )  # fmt: skip
 
     def _side_of(self, subject: Entity, predicate: Predicate) -> Entity | None:
         """Return the thing of which *on the right* is the other side: *A on the left of the plate, B on the right*."""

@@ -60,10 +60,19 @@ NOT_STATES = word_set(
 )
 """Verbs whose participles tell no state of a thing."""
 
+_MAY_BE = re.compile(r"\b(?:can|could|may|might)\s+(?:[\w-]+\s+){0,2}be\b", re.IGNORECASE)
+"""Verbs of what may be done to a thing, which is not its state."""
+
 _KEPT = re.compile(
     r"\b(?:go|goes|belongs?|stored?|keep|kept|put|placed?|put|lives?|moved?|stash|stashed)\b", re.IGNORECASE
 )
 """Verbs before *here* and *there* that mean a place named before, and not one that is pointed at."""
+
+_TURNS = frozenset({"step", "exception", "addition", "option", "choice", "thing", "item", "piece", "element"})
+"""Nouns that *is* fills with a thing: *the last step is the napkin, which goes on the plate*."""
+
+_CUTLERY = frozenset({"spoon", "teaspoon", "fork", "knife", "straw", "stirrer", "ladle", "strainer", "lid", "tongs"})
+"""Nouns of single things that go with a vessel and that it need not hold."""
 
 _DETACHED = frozenset({"lid", "cap"})
 """Parts that are taken off their thing, and then have a place of their own."""
@@ -94,6 +103,11 @@ _OF_PARTS = frozenset({"colour", "material", "shape", "size", "height", "length"
 
 _SEEN_ON_THINGS = frozenset({"stack", "hang", "roll", "turn", "open"})
 """Such verbs whose participles tell a state that can be seen."""
+
+
+def _carries(subject: Entity) -> bool:
+    """Return True for what has glasses on it or in it, and not a glass as its part, as a clock has."""
+    return last_word(subject.noun) in SUPPORTS | SURFACES | VESSELS | HOLDERS
 
 
 class Statements(Relations):
@@ -131,6 +145,8 @@ class Statements(Relations):
             if denied and relation not in ("pointing", "facing", "open", "closed"):
                 return  # what is denied of a part need not be so of the whole
             subject = subject.whole
+        if subject.role is Role.ABSTRACT and relation == "kind":
+            self._say_kind(subject, predicate, others)
         if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or last_word(subject.noun) in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
@@ -218,10 +234,14 @@ class Statements(Relations):
         return next((word for word, form in forms.items() if form.lemma == lemma and form.form == "ing"), lemma)
 
     def _is_doubtful_state(self, predicate: Predicate) -> bool:
-        """Return True where words beside a state were not understood: *fill it half full with what you want to use*."""
+        """Return True for what may be done to a thing, and where words beside a state were not understood.
+
+        Examples are *the lid can be removed* and *fill it half full with what you want to use*.
+        """
         lost = self.references.lost
         acts = predicate.value is not None and predicate.value.word.endswith("ing")
-        return acts or any(end <= predicate.span[0] or start > predicate.span[1] for start, end in lost)
+        may_be = _MAY_BE.search(self.text[self.how.span[0] : predicate.span[1]]) is not None
+        return acts or may_be or any(end <= predicate.span[0] or start > predicate.span[1] for start, end in lost)
 
     def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         pass
@@ -285,6 +305,11 @@ class Statements(Relations):
                 self._say(self.references.picked(free[0], one[0]), one[0].predicates, one[0])
             return
         for phrase in predicate.arguments:
+            abstract = subject.role is Role.ABSTRACT or subject.noun in _TURNS or self._is_no_thing(subject)
+            if abstract and phrase.head and phrase.predicates:
+                self._introduce(phrase)  # 'the only exception is the oyster fork, which goes on the right'
+            if abstract and (phrase.predicates or subject.role is Role.ABSTRACT):
+                continue
             one_of_them = phrase.pronoun == "one" and phrase.determiner == "the"  # 'my mug, the big blue one'
             for adjective in phrase.adjectives:
                 name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
@@ -322,6 +347,11 @@ class Statements(Relations):
             value = f"{predicate.value.rank} from {predicate.part or 'left'}"
             self._add("ordinal", (subject,), rest, value=value)
 
+    @staticmethod
+    def _is_tableware(head: str) -> bool:
+        """Return True for a noun of one thing, and not of a stuff: *saucer* of *a cup with saucer and spoon*."""
+        return last_word(head) in VESSELS | SUPPORTS | _CUTLERY
+
     def _say_with(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read what a thing has: contents, a part in some state, or another thing at it."""
         for phrase in predicate.arguments:
@@ -338,10 +368,11 @@ class Statements(Relations):
                 self._add(self.shared[0], (subject,), (thing,))
             elif phrase.head in SUBSTANCES or (
                 last_word(subject.noun) in VESSELS and phrase.head and phrase.determiner is None and not phrase.plural
+                and not self._is_tableware(phrase.head)
                 and phrase.owner is None and not phrase.predicates and phrase.count is None
             ):  # fmt: skip
                 self._add("contents", (subject,), (), value=phrase.head)
-            elif last_word(phrase.head) in PARTS or phrase.head == "glass":
+            elif last_word(phrase.head) in PARTS or (phrase.head == "glass" and not _carries(subject)):
                 states = [a.word for a in phrase.adjectives if a.dimension == "state"]
                 if states:
                     self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")

@@ -134,6 +134,8 @@ def _phrases() -> dict[str, list[tuple[tuple[str, ...], WordClass]]]:
 
 def _possible(words: list[Word], norms: list[str], at: int, nouns: KnownNouns) -> tuple[Possible, ...]:
     norm, form = norms[at], verb_forms().get(norms[at])
+    if norm.isdigit() and at and _is_open(norms[at - 1]):
+        return Possible("determiner"), Possible("noun", ("number after a word",))
     if (fixed := _function_word(norm)) is not None:
         return fixed
     if at == 0 and norms[1] in IS_FORMS and norm.isalpha() and norm not in ADVERBS | HEDGES:
@@ -150,6 +152,11 @@ def _possible(words: list[Word], norms: list[str], at: int, nouns: KnownNouns) -
     if form is None:
         return _unknown_to_verbs(norm, known, nouns)
     return (*_forms(words, at, norm, form, known), *([Possible("adjective")] if is_adjective(norm) else []))
+
+
+def _is_open(norm: str) -> bool:
+    """Return True for a word that may be a noun with a number after it: *point* of *on point 13*."""
+    return norm.isalpha() and norm not in closed_words() and norm not in NUMBERS and _function_word(norm) is None
 
 
 def _function_word(norm: str) -> tuple[Possible, ...] | None:

@@ -71,7 +71,52 @@ QUALITIES = word_set(
     " oblique frequent occasional permanent temporary tight snug slack ample enough sufficient adequate scarce abundant"
     " limited minimal moderate excessive fragrant scented perishable edible drinkable acceptable desirable preferable"
     " advisable customary conventional courteous polite rude sacred ancient medieval unstable unsafe uncomfortable"
-    " inconvenient unnecessary inaccessible"
+    " inconvenient unnecessary inaccessible awkward clumsy graceful tricky complicated complex intricate elaborate"
+    " luxurious sumptuous lavish modest humble striking dramatic vivid subtle muted subdued vibrant lively"
+    " cheerful gloomy dim dusky sunny cloudy rainy windy chilly cool lukewarm tepid icy frosty steamy humid arid"
+    " tangy pungent savoury sugary creamy crunchy crispy crumbly chewy juicy tender tough bland"
+    " tasty delicious appetising appetizing inedible nutritious leafy grassy mossy woody thorny prickly fluffy furry"
+    " hairy fuzzy silky velvety sticky slippery greasy oily soapy muddy dusty grimy filthy spotless immaculate pristine"
+    " shabby worn-out threadbare tattered dilapidated derelict decrepit antiquated obsolete outdated old-fashioned"
+    " contemporary up-to-date brand-new secondhand second-hand hand-made handmade homemade store-bought man-made"
+    " artificial synthetic genuine authentic fake"
+    " wealthy poor rich affluent needy generous stingy cruel friendly hostile gracious welcoming inviting"
+    " charming delightful pleasant unpleasant enjoyable boring tedious exciting thrilling amazing wonderful"
+    " fantastic terrific marvelous marvellous splendid magnificent superb gorgeous stunning ugly hideous"
+    " tacky stylish trendy fashionable chic sleek sophisticated refined posh classy quirky whimsical playful"
+    " serious solemn dignified stately majestic regal royal holy blessed divine spiritual secular"
+    " careless reckless cautious patient impatient eager keen willing reluctant lazy diligent industrious"
+    " clever smart intelligent wise foolish silly stupid crazy insane sane sober drunk awake asleep conscious"
+    " deaf mute lame disabled pregnant youthful mature immature"
+    " brave bold shy timid nervous anxious calm peaceful serene tranquil restless hectic chaotic orderly"
+    " disorganized disorganised uncluttered spacious roomy airy"
+    " wide-open secluded remote faraway proximate contiguous"
+    " unobstructed obstructed intact defective faulty flawless imperfect incomplete unfinished"
+    " protruding flush unattached loose-fitting tight-fitting"
+    " rickety wobbly shaky bulging slender chunky hefty weighty"
+    " foldaway collapsible movable moveable immovable immobile reversible"
+    " interchangeable compatible incompatible versatile specialised specialized"
+    " relevant irrelevant applicable crucial vital critical significant insignificant trivial negligible"
+    " obligatory mandatory compulsory voluntary intentional accidental deliberate random arbitrary"
+    " approximate precise inaccurate imprecise proportional proportionate disproportionate consistent inconsistent"
+    " homogeneous heterogeneous diverse"
+    " eventual imminent forthcoming"
+    " toxic poisonous harmful harmless hazardous flammable inflammable combustible corrosive caustic"
+    " sterile unsterile contaminated infectious hygienic unhygienic sanitary unsanitary"
+    " brittle supple pliable malleable stretchy stiff inflexible unyielding porous impermeable watertight"
+    " odorless odourless colorless colourless tasteless flavorful flavourful aromatic"
+    " noisy silent soundless deafening audible inaudible legible illegible readable unreadable recognisable"
+    " recognizable identifiable distinguishable indistinguishable conspicuous inconspicuous unnoticeable"
+    " unsuitable inappropriate improper incorrect invalid untrue bogus dubious doubtful questionable"
+    " lawful unlawful legal illegal ethical unethical moral immoral"
+    " eligible ineligible responsible irresponsible dependent independent reliable unreliable trustworthy"
+    " grateful thankful ungrateful hopeful hopeless helpless useless pointless meaningless meaningful purposeful"
+    " absolute ultimate utter sheer mere"
+    " asymmetric symmetric angular oblong elongated tapered tapering rimless handleless stemless lidless footed"
+    " ready-made ready-to-use self-contained easy-to-reach hard-to-reach eye-catching time-consuming labour-intensive"
+    " labor-intensive space-saving long-lasting short-lived well-lit well-worn well-made well-organized well-organised"
+    " low-lying high-end low-end high-quality low-quality top-notch top-heavy right-handed left-handed ambidextrous"
+    " unlucky lucky fortunate unfortunate auspicious inauspicious"
 )
 """Qualities that are not things by themselves: *it is easy to reach*. Before a noun they are part of its name.
 
@@ -152,7 +197,7 @@ def is_material_noun(word: str) -> bool:
     return word in _MATERIAL_NOUNS
 
 
-_TOOLS = frozenset({"opener", "cleaner", "dryer", "shutter", "hotter", "topper"})
+_TOOLS = frozenset({"creamer", "opener", "cleaner", "dryer", "shutter", "hotter", "topper"})
 """Nouns that look like the comparative of an adjective."""
 
 

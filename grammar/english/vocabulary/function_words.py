@@ -229,9 +229,13 @@ ADVERBS = word_set(
     " together apart away nearby itself himself herself else instead please kindly basically kinda sorta obviously"
     " however therefore"
     " further farther close facedown freely freestanding separately individually alone solely lengthwise sideways"
+    " widthwise breadthwise crosswise endwise edgewise lengthways widthways crossways edgeways endways slantwise"
     " crosswise squarely thus hence consequently accordingly"
     " dead bang smack slap ever least most more less super extremely overnight"
     " later soon finally twice thrice"
+    " oftentimes ofttimes nonetheless nevertheless likewise moreover furthermore altogether henceforth hereafter"
+    " sometime anyhow indeed thereby afterward beforehand presently meantime straightaway somehow forever regardless"
+    " indoors outdoors upstairs downstairs abroad overall everytime"
 )
 
 READY = word_set("cool dry ready cold warm hot firm done full set finished complete assembled level straight")

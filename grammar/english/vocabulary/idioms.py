@@ -86,6 +86,21 @@ IDIOMS = tuple(
         "in addition to",
         "by the way",
         *("in such a case", "in such case", "in such cases", "in most cases", "in some cases", "in many cases"),
+        *(
+            f"in {which} {noun}"
+            for which in ("either", "any", "that", "this")
+            for noun in ("case", "event", "instance")
+        ),
+        *(
+            f"in {which} {noun}"
+            for which in ("both", "all", "these", "those", "other")
+            for noun in ("cases", "instances")
+        ),
+        *(
+            f"in {which} {noun}"
+            for which in ("this", "that", "a similar", "some", "any", "every")
+            for noun in ("way", "manner", "fashion", "respect", "sense")
+        ),
         "at most",
         "at last",
         "if possible",
@@ -268,6 +283,10 @@ IDIOMS = tuple(
         "care must be taken that",
         "it is best to",
         "feel free to",
+        "go ahead and",
+        "be certain to",
+        *(f"{start}do not {doubt} to" for start in ("", "please ") for doubt in ("hesitate", "be afraid", "be shy")),
+        *(f"you {modal} not {doubt} to" for modal in ("should", "need") for doubt in ("hesitate", "be afraid")),
         "left over",
         "at arm 's length",
         "out of sight",

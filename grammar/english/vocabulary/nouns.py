@@ -528,6 +528,7 @@ def last_word(noun: str) -> str:
     Returns
     -------
     str
-        Last word; empty for an empty noun.
+        Last word that is not a number (*box* of *box 3*); empty for an empty noun.
     """
-    return noun.rsplit(" ", 1)[-1] if noun else ""
+    first, _, last = noun.rpartition(" ")
+    return last_word(first) if first and last.isdigit() else last

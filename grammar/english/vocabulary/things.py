@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deixis.grammar.english.vocabulary.adjectives import adjectives
+from deixis.grammar.english.vocabulary.adjectives import QUALITIES, adjectives
 from deixis.grammar.english.vocabulary.function_words import (
     DETERMINERS,
     MODALS,
@@ -28,7 +28,7 @@ _ACTS = word_set(
     " measure delivery attempt try effort adjustment placement presentation preparation installation maintenance"
     " inspection measurement alignment orientation rotation transition conversation communication discussion"
     " interaction circulation navigation storage organisation organization consideration requirement"
-    " recommendation suggestion explanation description instruction direction exception tip idea option"
+    " recommendation suggestion explanation description instruction direction exception idea option"
     " choice decision plan goal aim purpose reason cause result consequence benefit advantage disadvantage drawback"
     " issue problem trouble mistake error question answer example instance case situation circumstance scenario"
     " condition state status way manner method technique approach strategy style fashion habit practice custom"
@@ -43,6 +43,8 @@ _ACTS = word_set(
     " behaviour respect honor honour pride fear anger surprise pleasure pain stress hurry rush chaos size weight hunch"
     " truth rumor rumour talent force pace rhythm war fight talk chat trip journey travel holiday birthday"
     " wedding funeral appetite hunger thirst duty arrival departure overview routine tutorial hint repeat"
+    " strike leak flow traffic mess splash burst touch pop dash breath breeze draft draught airflow glare odor odour"
+    " sunshine sunlight daylight moonlight germ mildew bacteria"
 )
 _TIMES = word_set(
     "time moment second minute hour day night morning afternoon evening week weekend month season year century age"
@@ -62,12 +64,13 @@ _WITHOUT_PLACE = _QUALITIES | _ACTS | _TIMES | _DIRECTIONS | _UNNAMED | ABSTRACT
 """Last words of phrases that name no thing with a place."""
 _KEPT = word_set(
     "measure area date help law company light case work support state finish use reach rest stage rule second"
-    " initial standard connection view sound tip matter trace title name story plan order choice play step storage turn"
+    " initial standard connection view sound tip matter trace title name story plan order choice play step storage"
+    " turn notion"
 )
 """Such words that name a thing as the last word of a compound: *book case*, *spirit level*, *foot rest*."""
 _SELDOM_THINGS = word_set("level pitch bit outside inside")
 """Such words that the ontology knows, and that are seldom things by themselves."""
-_ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude", "acy", "ability", "ibility", "logy")
+_ENDINGS = ("ness", "ance", "ence", "ism", "ship", "tion", "sion", "ment", "tude", "acy", "ity", "logy")
 _CONCRETE = word_set(
     "station lotion potion cushion section illustration partition junction portion foundation extension invitation"
     " publication installation composition collection selection plantation solution caption mansion pension fraction"
@@ -79,6 +82,8 @@ _CONCRETE = word_set(
     " fence appliance ambulance entrance audience conveyance residence substance essence lance stance science"
     " ship spaceship steamship airship warship harness wilderness witness governess lioness business prism"
     " mechanism organism position settlement allotment"
+    " city cavity commodity facility utility university nativity vanity community deity entity extremity celebrity"
+    " necessity amenity novelty rarity oddity curiosity charity fraternity trinity"
 )
 """Words with the endings of abstract nouns that name things."""
 _QUALIFYING = ("ive", "ful", "less", "ous", "able", "ible", "iest", "cest", "gest")
@@ -90,7 +95,7 @@ _NOUNS_LIKE_QUALITIES = word_set(
     " handful spoonful armful mouthful"
     " table timetable vegetable cable constable stable bible crucible dirigible collectible turntable worktable fable"
     " variable wearable consumable disposable perishable edible convertible thurible"
-    " negative positive digest"
+    " negative positive digest cosy cozy sharp"
 )
 """Nouns with such endings."""
 _ADVERBS_NOT = word_set(
@@ -116,9 +121,14 @@ _SUGGESTING = word_set("suggest recommend advise prefer think")
 """Verbs of persons, which are not nouns."""
 _PARTICIPLES = word_set(
     "placing putting positioning arranging attaching inserting connecting adding keeping leaving making using"
-    " including having stuffing alternating filling"
+    " including having stuffing alternating filling storing grouping displaying organizing organising securing"
+    " installing tucking"
 )
 """Participles of clauses, which are not the first word of a name as those of *folding chair* are."""
+_VERBAL = ("bute", "tute", "cate", "nate", "rate", "ize", "ify", "duce", "clude", "scribe", "volve")
+"""Endings of verbs, which stand after a plural in a clause."""
+_OF_MEANS = frozenset({"using", "including", "having", "containing"})
+"""Participles of clauses inside a run of words."""
 _OF_CLAUSES = (
     DETERMINERS
     | POSSESSIVES.keys()
@@ -155,6 +165,8 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
     if not noun or noun.startswith(LITERAL) or (nouns.knows(noun) and noun not in _SELDOM_THINGS):
         return True
     words = noun.split()
+    if words[-1].isdigit():
+        return True  # 'number 9'
     if _is_piece_of_clause(words, nouns):
         return False
     if len(words) > 1 and words[-1] == "thing":
@@ -169,8 +181,18 @@ def can_have_a_place(noun: str, nouns: KnownNouns) -> bool:
 
 def _is_quality(word: str) -> bool:
     """Return True for a word with the form of an adjective: *expensive*, *scarcest*, *shorter*."""
+    if word in _NOUNS_LIKE_QUALITIES:
+        return False
     degree = adjectives().get(word) is not None and word.endswith(("er", "est"))
-    return degree or (word.endswith(_QUALIFYING) and word not in _NOUNS_LIKE_QUALITIES)
+    return degree or word in QUALITIES or _is_superlative(word) or word.endswith(_QUALIFYING)
+
+
+def _is_superlative(word: str) -> bool:
+    """Return True for the superlative of a quality: *sharpest*, *simplest*, *driest*."""
+    if not word.endswith("est"):
+        return False
+    stem = word.removesuffix("est")
+    return not QUALITIES.isdisjoint((stem, f"{stem}e", stem[:-1], f"{stem[:-1]}y"))
 
 
 def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
@@ -182,6 +204,10 @@ def _is_piece_of_clause(words: list[str], nouns: KnownNouns) -> bool:
     at = words.index("can") if "can" in words[1:-1] else 0
     if at and not nouns.knows(words[at + 1]):
         return True  # 'rules can vary', not 'garbage can lid'
+    if words[-1].endswith(_VERBAL) and not nouns.knows(words[-1]) and nouns.singular(words[-2])[1]:
+        return True  # 'parts contribute'
+    if not _OF_MEANS.isdisjoint(words[1:]):
+        return True  # 'wall using nails'
     counted = words[0].endswith("ing") and not NUMBERS.keys().isdisjoint(words[1:-1])
     if words[0] in _PARTICIPLES or counted:  # 'placing lids', 'drilling two screws'
         return True

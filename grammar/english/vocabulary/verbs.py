@@ -32,7 +32,7 @@ posture: sink sinks sank sunk sinking, wind winds wound wound winding, drive dri
 posture: weave weaves wove woven weaving
 posture: sling slings slung slung slinging, preset presets preset preset presetting
 posture: thrust thrusts thrust thrust thrusting, burn burns burnt burnt burning, loop, huddle, snuggle
-posture: deposit, follow, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
+posture: deposit, sort, follow, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
 lean: lean leans leant leant leaning, prop, lean
 face: face, stare, gaze, peer, view
 point: point, aim, direct, open
@@ -91,6 +91,58 @@ other: unpack, unload, unhook, detach, disassemble, discard
 other: simmer, stir, whisk, knead, marinate, garnish, refrigerate, adjust, rotate, straighten, flatten, verify, confirm
 other: dispose, emphasize, emphasise, ensure, remind, imagine, disconnect, dismantle, vary, differ
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
+posture: stuff, file, reposition, rearrange, plunk, corral, collect, consolidate, distribute, sow, restore, berth, wad
+posture: sheathe, lug, haul, conceal, hoard, ensconce, mound, ease, guide, maneuver, manoeuvre
+posture: wiggle, flip, invert, upend, cascade, confine, banish, interlace, intersperse, superimpose, juxtapose
+posture: elevate, implant, transplant, repot, rehang rehangs rehung rehung rehanging, reinsert, reinstall, reattach
+posture: reconnect, restack, replant, unroll, tack, rack, chain, wire
+other: alter, amend, cultivate, define, develop, merge, mince, poach, refold, slather, uncover
+other: accept, accomplish, acquire, adapt, adhere, admit, adopt, adore, afford, analyse, analyze, annotate, announce
+other: annoy, anticipate, apologize, appreciate, approve, ascend, assess, assist, assure, attend, attract
+other: baste, bathe, behave, blanch, borrow, bother, braise, breathe, brighten, broaden, browse, calculate
+other: calibrate, celebrate, characterize, cherish, chop, clarify, cleanse, coincide, combine, commemorate
+other: communicate, compare, compensate, compete, compile, complain, comply, comprise, concentrate
+other: condense, conduct, conform, confuse, consider, consist, constitute, consume, contribute
+other: convert, convey, convince, cook, cooperate, coordinate, correspond, crumble, customise, customize, dampen
+other: darken, deadhead, decant, declare, declutter, decorate, dedicate, deepen, defend, defrost, degrease, delete
+other: deliver, demonstrate, deny, depend, depict, deserve, detect, deter, deteriorate, determine, detract, devote
+other: diffuse, dilute, diminish, disappear, discover, discuss, disguise, disinfect, disrupt, dissolve
+other: distinguish, distract, disturb, dominate, donate, earn, educate, eliminate, elongate, embellish, embody, emit
+other: employ, enable, encourage, endanger, endure, engage, engrave, enlarge, enlighten, enrich, entertain, equip
+other: erase, erect, establish, estimate, evaluate, evaporate, evoke, exaggerate, examine, exceed, excel, excite
+other: execute, exist, expand, expect, explore, expose, extinguish, facilitate, fade, familiarize, ferment
+other: fertilize, finalize, flatter, formulate, fortify, foster, freshen, frighten, fulfil, fulfill, generate
+other: germinate, greet, halve, harden, harmonize, hasten, heighten, hesitate, hibernate, hinder, hire
+other: hydrate, ignite, illuminate, illustrate, imitate, impose, impress, incorporate, indicate, induce, indulge
+other: inflate, inform, infuse, inhabit, inherit, inhibit, initiate, injure, inspire, instruct, insulate, integrate
+other: intend, interact, interfere, interpret, interrupt, introduce, invent, invest, invite, involve, isolate
+other: itemize, jeopardize, justify, launder, lengthen, lessen, lighten, loathe, lubricate, magnify, maintain
+other: manage, manipulate, memorize, mingle, minimise, misplace, modify, moisten, motivate, multiply, narrate
+other: navigate, neaten, necessitate, neglect, neutralize, nourish, obey, obstruct, obtain, offend, omit, operate
+other: oppose, optimize, originate, overcook, overfill, overheat, overpower, overshadow, overwater, overwhelm, owe
+other: participate, penetrate, perceive, perform, persist, personalize, persuade, pertain, polish, pollinate, ponder
+other: portray, possess, postpone, precede, predict, prepare, preserve, prevail, prioritise, prioritize, proceed
+other: proclaim, procure, prohibit, proliferate, prolong, promote, pronounce, propagate, propose, prosper, prune
+other: publish, pulverize, purify, pursue, qualify, quench, radiate, reassemble, reassure, recharge, recite
+other: reclaim, recognise, recognize, reconsider, reconstruct, recover, recreate, redecorate, redefine
+other: refer, refine, refinish, reflect, refrain, refresh, regain, regulate, reheat, reinforce, reject, relate
+other: relax, relieve, rely, remember, renew, renovate, repaint, represent, reproduce, repurpose, resist, resolve
+other: respond, restrain, restrict, resume, retain, retire, retrieve, reuse, revise, revisit, revolve, ripen
+other: sanitise, sanitize, satisfy, saturate, scour, sharpen, shatter, shorten, sift, signify, simplify, soothe
+other: stabilize, startle, sterilize, stimulate, strengthen, submit, succeed, suffer, suffice, summarize, supervise
+other: surpass, survive, sustain, sweeten, symbolise, symbolize, tempt, tend, terminate, thicken, threaten, tolerate
+other: transform, translate, transmit, undermine, unify, unite, unlock, untangle, untie, unwrap, unzip, utilise
+other: utilize, vanish, ventilate, vibrate, violate, visualize, wander, warn, weaken, widen, wither, worry, yank
+other: yearn, understand understands understood understood understanding
+other: withdraw withdraws withdrew withdrawn withdrawing, undo undoes undid undone undoing
+other: redo redoes redid redone redoing, overcome overcomes overcame overcome overcoming
+other: oversee oversees oversaw overseen overseeing, lend lends lent lent lending
+other: teach teaches taught taught teaching, forgive forgives forgave forgiven forgiving
+other: foresee foresees foresaw foreseen foreseeing
+other: undertake undertakes undertook undertaken undertaking, withstand withstands withstood withstood withstanding
+other: prove proves proved proven proving, rethink rethinks rethought rethought rethinking
+other: rebuild rebuilds rebuilt rebuilt rebuilding, seek seeks sought sought seeking
+other: spend spends spent spent spending, deal deals dealt dealt dealing, fight fights fought fought fighting
 """
 
 REPORTS = word_set(
@@ -166,6 +218,10 @@ PUT_VERBS = word_set(
     " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan return"
     " scoot snake wheel cluster layer stash nudge transfer shift display hoist squeeze settle deposit organize"
     " organise lash"
+    " stuff file reposition rearrange plunk corral collect consolidate distribute sow restore berth wad sheathe lug"
+    " haul conceal hoard ensconce mound ease guide maneuver manoeuvre wiggle flip invert upend cascade"
+    " confine banish interlace intersperse superimpose juxtapose elevate implant transplant repot rehang reinsert"
+    " reinstall reattach reconnect restack replant unroll tack rack chain wire"
 )
 
 PLACING_VERBS = word_set(
@@ -180,6 +236,7 @@ NAMED_LIKE_THINGS = word_set(
     " hammer tap pop staple stitch peg dab smear dock hitch latch"
     " center centre turn roll fold fan prop nest seat store rest stand set place mount slide bring"
     " snake wheel cluster layer transfer shift display squeeze nudge"
+    " stuff file mound guide flip tack rack chain wire"
 )
 """Commands whose verb is a noun as well: *screw the bracket to it* and *screw holes*."""
 
@@ -243,6 +300,7 @@ NOUNS_BEFORE_VERBS = word_set(
     " thread pack feed scoop dot ladle stretch swing"
     " pop plump dab smear hammer tap staple stitch peg latch dock hitch cap crown ring light cut split shut catch break"
     " bloom tear pick strike melt fringe sport boast cradle skirt"
+    " file tack rack chain wire guide mound stuff"
 )
 """Verbs whose plain forms are nouns or adjectives more often."""
 
@@ -262,4 +320,5 @@ def _regular(lemma: str) -> dict[str, str]:
 _DOUBLED = frozenset({"set", "put", "sit", "run", "stop", "jut", "plug", "prop", "pin", "slot", "jam", "cram", "hug",
                       "fit", "tip", "drop", "step", "get", "overlap", "abut", "begin", "slip", "clip", "wrap", "sag",
                       "bob", "strap", "drag", "transfer", "refer", "tap", "pop", "dab", "peg", "flop",
-                      "snag", "cap", "trap", "travel"})  # fmt: skip
+                      "snag", "cap", "trap", "travel", "omit", "submit", "emit", "admit", "excel", "deter", "equip",
+                      "chop", "repot", "wad", "flip", "corral"})  # fmt: skip

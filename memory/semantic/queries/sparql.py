@@ -29,8 +29,8 @@ from deixis.memory.semantic.rdf.files import PREFIXES, short
 from deixis.memory.semantic.rdf.graphs import GRAPHS, READABLE, GraphName, graph_iri
 from deixis.ontology.rdf.triples import LEARNED, typed
 from deixis.ontology.rdf.vocabulary import BASE, DX, W3C
-from deixis.ontology.relations.relation import nearest
 from deixis.printable import window
+from deixis.spelling import nearest
 
 _UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH", "USING"}
 _FORMS = {"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"}

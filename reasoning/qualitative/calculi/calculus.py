@@ -20,9 +20,9 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import UnknownAtomError
 from deixis.reasoning.qualitative.calculi.words import atoms_within, relation_of
+from deixis.spelling import nearest
 
 MAX_TABLE_ATOMS = 320  # maximum atoms of a table calculus; OPRA of granularity 4 has 272
 

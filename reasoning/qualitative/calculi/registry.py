@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cache
 from typing import cast
 
-from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import UnknownAtomError, UnknownCalculusError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
+from deixis.spelling import nearest
 
 CALCULI: tuple[str, ...] = ("point", "allen", "ra", "ba", "rcc5", "rcc8", "cd", "ten", "distance", "direction-distance")
 """Names of all calculi."""

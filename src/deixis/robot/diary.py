@@ -17,16 +17,13 @@ import numpy as np
 from deixis.errors import DeixisError
 from deixis.memory.episodes.fluents.changes import Add, Change, Finish, Update
 from deixis.memory.episodes.fluents.episode import MAX_TEXT, EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.predicates import AT, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS
+from deixis.memory.episodes.predicates import AT, CALLED, CONTRADICTED, EXPECTED, IS_A, LAYOUT, SAID, SAME_AS
 from deixis.ontology.strict_json import parse_json
 from deixis.perception.formats.scene_json import read_scene, scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.expected import ExpectedObject, Standing
 from deixis.robot.modules import Board, Module
-
-LAYOUT, FAULT = "layout", "fault"
-"""Predicates: the layout of the table, and a mistake on it."""
 
 UNNAMED, NAMELESS = "unnamed", "nameless"
 """Predicates of tables whose layout has no name: the scene, and that a person gave no name for it."""

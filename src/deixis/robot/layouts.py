@@ -25,6 +25,7 @@ from deixis.ontology.tbox import Ontology
 from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
+from deixis.reasoning.entailment.claim_facts import implications_with_claims
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.overlap import common_lengths, overlapping
@@ -178,9 +179,11 @@ class LearnedLayout:
         str or None
             The reason with the facts; None if both can hold.
         """
-        facts = [fact for one in (self.script, script) for fact in one.graph().facts() if fact.weight >= 1]
-        names = sorted({name for fact in facts for name in (fact.subject, fact.object)})
-        implied = Implications(RelationGraph.from_facts(self.graph.vocabulary, names, dict.fromkeys(facts)))
+        graphs = self.graph, script.graph()
+        facts = [fact for graph in graphs for fact in graph.facts() if fact.weight >= 1]
+        names = sorted({name for graph in graphs for name in graph.nodes})
+        both = RelationGraph.from_facts(self.graph.vocabulary, names, dict.fromkeys(facts))
+        implied = implications_with_claims(both, (*self.script.claims, *script.claims))[1][-1]
         conflict = None if implied.consistent else find_conflict(implied)
         return None if conflict is None else f"{conflict.reason} ({', '.join(map(str, conflict.facts))})"
 

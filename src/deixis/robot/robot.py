@@ -25,7 +25,7 @@ from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
 from deixis.memory.episodes.fluents.changes import Change
 from deixis.memory.episodes.fluents.episode import event_of
-from deixis.memory.episodes.predicates import EXPECTED, IS_A
+from deixis.memory.episodes.predicates import EXPECTED, FAULT, IS_A, LAYOUT
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.journal import Part
 from deixis.memory.owner import Closing
@@ -34,8 +34,9 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import explain
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.diary import FAULT, LAYOUT, Diary, RobotModule
+from deixis.robot.diary import Diary, RobotModule
 from deixis.robot.expected import LOOK_INTERVAL, MIN_MATCH_PROBABILITY, ExpectedObject, Sighting, Standing, introduced
+from deixis.robot.ids import with_names
 from deixis.robot.kept import KeptElsewhere, kept_elsewhere
 from deixis.robot.layouts import LearnedLayout
 from deixis.robot.lessons import MIN_SETTLED_PROBABILITY, QUESTION_COST, Question, Settled, SettledBy, TableLesson
@@ -553,7 +554,8 @@ class Robot(Closing):
         *There is a red ball on the left* states what is present. The robot expects each object that such a text
         introduces until it sees a thing that fits, or has seen the place empty for long enough (:attr:`expected`).
         *The cups belong in the kitchen* tells where things are kept away from the table: it is noted as something that
-        was said, and no layout is learned from it.
+        was said, and no layout is learned from it. The id of a thing in view (*t2 is right of the plate*) stands for
+        its name, and the role of that name is this thing.
 
         Parameters
         ----------
@@ -576,6 +578,8 @@ class Robot(Closing):
         ------
         ScriptError
             If the text is not understood.
+        IdError
+            If it has the id of a thing that is not in view or has no name.
         RobotError
             If it describes a layout before the robot has seen a table.
         """
@@ -583,16 +587,23 @@ class Robot(Closing):
             raise RobotError("`text` must describe a layout, got a blank text; describe how the table is laid")
         if isinstance(text, str) and text.rstrip().endswith("?"):
             raise RobotError("`text` must describe a layout or objects, got a question; ask `session.recall`")
+        spoken, meant = text, {}
+        if isinstance(text, str) and self._scene is not None:
+            named = with_names(text, self._scene.ids, self.session.ontology, self._name_of)
+            text, meant = named.text, named.things
         if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
-            return self._expect_objects(presence, text, by, self._time(at), event)
+            return self._expect_objects(presence, text, str(spoken), by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
         if isinstance(text, str) and script.name is None:
             kept = kept_elsewhere(script, self.session.ontology)
             if kept is not None:
-                self.diary.heard(text, by, self._time(at), self.diary.event(event, "sentence"))
+                self.diary.heard(str(spoken), by, self._time(at), self.diary.event(event, "sentence"))
                 return kept
         seen = self.knowledge().recognised(self.scene)
-        words = text if isinstance(text, str) else script.reading.text if script.reading else format_script(script)
+        names = {thing: category for category, thing in meant.items()}
+        things = tuple(replace(each, label=names.get(each.id, each.label)) for each in seen.objects)
+        seen = replace(seen, objects=things) if names else seen
+        words = spoken if isinstance(spoken, str) else script.reading.text if script.reading else format_script(script)
         now, event = self._time(at), self.diary.event(event, "sentence")
         earlier = self.layouts.get(layout_name(script))
         with self.diary.collected() as changes:
@@ -602,7 +613,30 @@ class Robot(Closing):
         )
         self._known_at = max(self._known_at, now)
         contradiction = None if earlier is None else earlier.contradiction(script)
-        return Told(self._learned(script, self.scene, learned), learned, contradiction)
+        lesson = self._learned(script, self.scene, learned)
+        return Told(self._settle_named(lesson, meant, by), learned, contradiction)
+
+    def _name_of(self, thing: str) -> str | None:
+        """Return the category of a thing of the present scene, or None if it is not known well enough."""
+        shares = self.names().get(thing, {})
+        best = max(shares, key=lambda name: shares[name], default=None)
+        if best is not None and shares[best] >= MIN_NAME_PROBABILITY:
+            return best
+        seen = self.scene[thing]  # a thing that the known layouts do not explain may have a label
+        labelled = seen.label is not None and seen.confidence >= MIN_NAME_PROBABILITY
+        return new_category_name(seen.label) if labelled and seen.label is not None else None
+
+    def _settle_named(self, lesson: TableLesson, meant: Mapping[str, str], by: str) -> TableLesson:
+        """Settle the roles of a lesson whose things a person named by their ids."""
+        for category, thing in meant.items():
+            roles = [role for role in lesson.roles if plain_name(role) == category]
+            known = [role for role in roles if (each := lesson.settled.get(role)) is not None and each.thing == thing]
+            if not roles or known:
+                continue
+            if lesson.scene[thing].cloud is not None:
+                self.session.teach(lesson.scene, thing, category, by, (lesson.id, roles[0]))
+            lesson = self._settle(lesson, roles[0], Settled(thing, SettledBy.POINTING, 1.0))
+        return lesson
 
     def _layout(self, text: str) -> Script:
         """Return the layout that a text describes, with the name that the text gives it."""
@@ -636,9 +670,12 @@ class Robot(Closing):
         return None
 
     def _expect_objects(
-        self, script: Script, text: str, by: str, at: float, event: str | None
+        self, script: Script, text: str, spoken: str, by: str, at: float, event: str | None
     ) -> tuple[ExpectedObject, ...]:
-        """Expect the objects that a sentence introduces, and do not expect those that it says are absent."""
+        """Expect the objects that a sentence introduces, and do not expect those that it says are absent.
+
+        ``text`` has the names of things, where ``spoken`` may have their ids.
+        """
         event = event or self.diary.board.new_id("sentence")
         absent = script.reading.absent if script.reading is not None else ()
         known = [
@@ -652,7 +689,7 @@ class Robot(Closing):
             for role in introduced(script)
         ]
         with self.diary.as_one():
-            self.diary.heard(text, by, at, event)
+            self.diary.heard(spoken, by, at, event)
             for before, one in zip(self.expected, known, strict=True):
                 if one is not before:
                     self.diary.looked_for(one, at)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import deixis
+from deixis.reasoning.errors import InconsistencyError
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.robot import RobotError, Told
 
@@ -44,6 +45,28 @@ def test_a_contradicting_description_is_reported_and_counts(robot: deixis.Robot)
     )
     assert told.contradiction in told.summary() and told.contradiction in told.to_text()
     assert robot.layouts["supper"].experience.tables == 4
+
+
+def test_a_description_that_cannot_hold_is_refused(robot: deixis.Robot) -> None:
+    before = robot.diary.board.holding(), dict(robot.layouts)
+    for text, reason in (
+        ("layout cups; cup inside mug; mug inside cup", "'cup' cannot be both inside and containing 'mug'"),
+        ("The cup is in the mug, the mug is in the bowl and the bowl is in the cup.", "inside and containing"),
+        ("The plate, the fork and the cup lie in a row from left to right. The cup is left of the plate.", "left of"),
+    ):
+        with pytest.raises(InconsistencyError, match=f"nothing was learned.*{reason}"):
+            robot.told(text, at=3.0)
+    assert (robot.diary.board.holding(), dict(robot.layouts)) == before
+
+
+def test_claims_of_an_earlier_description_may_be_contradicted(robot: deixis.Robot) -> None:
+    rows = [
+        f"layout row; {order} in a row from left to right" for order in ("fork, plate, knife", "plate, fork, knife")
+    ]
+    first, second = (robot.told(text, at=3.0 + number) for number, text in enumerate(rows))
+    assert isinstance(first, Told) and isinstance(second, Told)
+    assert first.contradiction is None
+    assert second.contradiction is not None and "'fork' cannot be both left of and right of" in second.contradiction
 
 
 def test_a_question_is_not_learned_as_a_description(robot: deixis.Robot) -> None:

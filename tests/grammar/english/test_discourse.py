@@ -308,6 +308,31 @@ def test_sides_from_another_viewpoint_are_conditional(text: str) -> None:
     assert fact.condition == text.partition(",")[0]
 
 
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "The bench is seen from the door.",
+        "Everything is seen from the door.",
+        "Left and right are meant as seen from the door.",
+        "As seen from the door.",
+    ],
+)
+def test_a_sentence_of_its_own_states_the_viewpoint(statement: str) -> None:
+    text = f"{statement} The lamp is left of the box. Seen from the door, the cup is right of the box."
+    assert asserted(text) == {"left(lamp, box)", "right(cup, box)"}
+    assert read_english(text).viewpoint == "door"
+
+
+def test_another_viewpoint_than_that_of_the_text_is_conditional() -> None:
+    text = "The bench is seen from the stool. The lamp is left of the box. Seen from the door, the cup is right of it."
+    assert asserted(text) == {"left(lamp, box)"}
+
+
+@pytest.mark.parametrize("text", ["The cup can be seen from the door", "The cup is not seen from the door"])
+def test_what_can_be_seen_from_a_place_is_not_a_viewpoint(text: str) -> None:
+    assert read_english(f"{text}. The cup is left of the box.").viewpoint is None
+
+
 @pytest.mark.parametrize("frame", ["From where I sit", "From my side of the table", "As you look at it"])
 def test_sides_from_the_viewer_are_asserted(frame: str) -> None:
     assert asserted(f"{frame}, the lamp is left of the box.") == {"left(lamp, box)"}

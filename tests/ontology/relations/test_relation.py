@@ -9,7 +9,7 @@ import pytest
 
 from deixis.errors import DeixisError, OntologyError, UnknownTermError
 from deixis.ontology.relations.allen import ALL_ALLEN, SYMBOLS, Allen, allen_mask, members
-from deixis.ontology.relations.relation import Reading, Relation, Relations, nearest, plain_phrase
+from deixis.ontology.relations.relation import Reading, Relation, Relations, plain_phrase
 from deixis.ontology.tbox import default_ontology
 
 R = default_ontology().relations
@@ -200,11 +200,6 @@ def test_a_relation_that_refers_to_an_unknown_one_is_refused() -> None:
 def test_phrases_ignore_case_articles_and_underscores() -> None:
     assert plain_phrase("  To THE left_of  a ") == "to left of"
     assert plain_phrase("the") == ""
-
-
-def test_a_very_different_word_has_no_nearest_word() -> None:
-    assert nearest("xyz", ["left", "right"]) is None
-    assert nearest("lefft", []) is None
 
 
 @pytest.mark.parametrize("relation", Allen)

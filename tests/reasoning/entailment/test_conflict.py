@@ -119,6 +119,13 @@ def test_adding_facts_keeps_a_contradiction(stated: list[Fact], data: st.DataObj
         (["left or top(a, b)", "not right(b, a)", "not top(a, b)"], None, "neither left of nor above 'b'"),
         (["left or top(a, b)", "not left or top(a, b)"], None, "neither left of nor above 'b'"),
         (["right or top_left(a, b)", "not left(a, b)", "not right(a, b)"], None, "neither right of nor top left of"),
+        (["inside(a, b)", "inside(b, a)"], None, "'a' cannot be both inside and containing 'b'"),
+        (["inside(a, b)", "containing(c, b)", "inside(c, a)"], None, "'a' cannot be both inside and containing 'b'"),
+        (["stacked(a, b)", "stacked(b, c)", "stacked(c, a)"], None, "cannot be both stacked on and stacked under"),
+        (["bigger(a, b)", "smaller(c, b)", "bigger(c, a)"], None, "cannot be both bigger than and smaller than"),
+        (["near(a, b)", "not near(b, a)"], None, "'b' is near 'a', but that is denied"),
+        (["leaning(a, b)", "not touching(b, a)"], None, "'b' is touching 'a', but that is denied"),
+        (["inside(a, b)", "inside(b, c)", "not inside or near(a, c)"], None, "'a' is inside 'c', but that is denied"),
     ],
 )
 def test_conflicts_worked_out_by_hand(
@@ -146,10 +153,52 @@ def test_conflicts_worked_out_by_hand(
         ["not left(a, b)", "not right(a, b)", "not on(a, b)"],
         ["not left(a, a)"],
         ["left(a, b)", "not exactly_left(a, b)"],
+        ["inside(a, b)", "on(b, a)"],  # a pot under its cosy
+        ["inside(a, b)", "0.8 inside(b, a)"],
+        ["inside(a, b)", "optional inside(b, a)"],
+        ["inside or on(a, b)", "inside(b, a)"],
+        ["near(a, b)", "near(b, c)", "not near(a, c)"],
+        ["touching(a, b)", "not leaning(a, b)"],
+        ["bigger(a, b)", "taller(b, a)"],
     ],
 )
 def test_compatible_facts_have_no_conflict(sentences: list[str], graph_of: MakeGraph) -> None:
     assert conflict_of(graph_of(*sentences, nodes="a b c")) is None
+
+
+words = st.builds(
+    lambda subject, word, obj, positive: Fact(subject, (R[word],), obj, positive),
+    st.sampled_from(NODES),
+    st.sampled_from(["inside", "containing", "near", "leaning", "touching", "bigger", "smaller"]),
+    st.sampled_from(NODES),
+    st.sampled_from([True, True, True, False]),
+).filter(lambda fact: fact.subject != fact.object)
+
+
+def follows(stated: list[Fact]) -> set[tuple[str, str, str]]:
+    """Return the facts that follow by inverses, broader words and transitivity, by repeating these rules."""
+    known: set[tuple[str, str, str]] = set()
+    new = {(fact.relations[0].name, fact.subject, fact.object) for fact in stated if fact.positive}
+    while new - known:
+        known |= new
+        new = {(R[word].inverse, o, s) for word, s, o in known}
+        new |= {(broader, s, o) for word, s, o in known for broader in R[word].broader}
+        new |= {(word, s, d) for word, s, o in known for other, c, d in known if (other, c) == (word, o)
+                and R[word].transitive}  # fmt: skip
+    return known
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(words, max_size=7))
+def test_graded_words_conflict_exactly_if_their_rules_say_so(stated: list[Fact]) -> None:
+    known = follows(stated)
+    cycle = any(s == o and word in ("inside", "bigger") for word, s, o in known)
+    denied = any((fact.relations[0].name, fact.subject, fact.object) in known for fact in stated if not fact.positive)
+    found = among(stated)
+    assert (found is not None) == (cycle or denied)
+    facts = () if found is None else found.facts
+    for fact in facts:
+        assert among([other for other in facts if other is not fact]) is None
 
 
 def test_the_conflict_with_the_fewest_facts_is_reported(graph_of: MakeGraph) -> None:
@@ -180,6 +229,7 @@ def test_a_relation_is_compatible_with_its_consequences() -> None:
     for relation in ORDERED:
         assert all(compatible(relation, R[name]) for name in relation.broader)
         assert not compatible(relation, R[relation.inverse])
+    assert not compatible(R["inside"], R["containing"]) and compatible(R["touching"], R["touching"])
 
 
 def test_exact_relations_are_compatible_only_with_themselves() -> None:

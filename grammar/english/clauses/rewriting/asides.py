@@ -21,7 +21,7 @@ from deixis.grammar.english.tree import Degree
 from deixis.grammar.english.vocabulary.function_words import PERSONS, UNITS
 from deixis.grammar.english.vocabulary.nouns import GENERAL, last_word
 from deixis.grammar.english.vocabulary.tables import word_set
-from deixis.grammar.english.vocabulary.verbs import TRANSITIVE_RELATIONS, verb_forms
+from deixis.grammar.english.vocabulary.verbs import FIND_VERBS, PLACING_VERBS, TRANSITIVE_RELATIONS, verb_forms
 
 _SIZES = frozenset({"size", "height", "length", "width", "shape", "colour", "color", "thickness", "weight"})
 
@@ -55,6 +55,9 @@ _LAYERS = word_set("layer bed row line ring circle pile heap mound stack border 
 
 _USING = word_set("use need want like access reach handle")
 """Verbs of a person that tell things apart, and not where they are."""
+
+_PLACES_OF_AIMS = word_set("on inside under above behind in_front beside next_to near at around between left right")
+"""Relations after an infinitive of placing that are those of the thing before it."""
 
 _DONE_BY_MEANS = word_set(
     "attach connect fix fasten secure join link tie bolt screw nail glue tape strap clip clamp pin hook tuck roll fold"
@@ -137,15 +140,17 @@ def _free_place(chunks: list[Chunk], at: int) -> Run | None:
         chunks[at].type == "SUB" and chunks[at].value == "where" and type_at(chunks, at - 1) in ("BE", "VERB")
         and thing and type_at(chunks, at + 2) in FINITE
     )  # fmt: skip
+    named = thing and chunks[at].value == "where" and bool(chunks[at + 1].value.head)
     aside = (
         chunks[at].type in ("SUB", "REL") and chunks[at].value in ("where", None) and thing and not there
-        and chunks[at + 1].value.pronoun in ("it", "they", "you")
+        and (chunks[at + 1].value.pronoun in ("it", "they", "you") or named)
         and [type_at(chunks, at - k) for k in (2, 1)] == ["PUT", "NP"]
     )  # 'put it where it cannot fall, between the boxes'  # fmt: skip
     if not there and not free and not aside:
         return None
     end = end_before(chunks, at + 3, JOINT_TYPES)
-    if aside and [type_at(chunks, end + k) for k in (0, 1)] != ["COMMA", "PREP"]:
+    after = next((k for k in range(end + 1, len(chunks)) if chunks[k].type != "ADVERB"), len(chunks))
+    if aside and [type_at(chunks, end), type_at(chunks, after)] != ["COMMA", "PREP"]:
         return None
     return end + ((free or aside) and type_at(chunks, end) in ("COMMA", "COLON")), None
 
@@ -179,6 +184,17 @@ def _caused(chunks: list[Chunk], at: int) -> Run | None:
     if not caused or type_at(chunks, at + 4) not in JOINT_TYPES | {""} or not chunks[at].value.head:
         return None
     return unknown(chunks, at, at + 4) if chunks[at + 2].value.pronoun in ("it", "they") else None
+
+
+def _intended_place(chunks: list[Chunk], at: int) -> Run | None:
+    """Find the infinitive before the place that a thing is meant for: *a rug to put under the table*."""
+    named = at > 0 and chunks[at - 1].type == "NP" and bool(chunks[at - 1].value.head)
+    if not named or [type_at(chunks, at + k) for k in range(4)] != ["UNKNOWN", "UNKNOWN", "PREP", "NP"]:
+        return None
+    verb = next((k for k in range(at - 1, 0, -1) if chunks[k].type in FINITE), 0)
+    planned = verb and chunks[verb - 1].type == "NP" and chunks[verb - 1].value.pronoun in PERSONS - {"you"}
+    said = chunks[at].value == "to" and chunks[at + 1].value in PLACING_VERBS and not planned  # 'I have cups to put …'
+    return (at + 2, None) if said and chunks[at + 2].value.preposition.relation in _PLACES_OF_AIMS else None
 
 
 def _infinitive(chunks: list[Chunk], at: int) -> Run | None:
@@ -234,13 +250,23 @@ def _relative_aside(chunks: list[Chunk], at: int) -> Run | None:
 
 
 def _restriction_of_object(chunks: list[Chunk], at: int) -> Run | None:
-    """Find which things a command is about, before their place: *put the fruits that spoil quickly on the shelf*."""
-    if type_at(chunks, at) != "REL" or [type_at(chunks, k) for k in (at - 2, at - 1)] != ["PUT", "NP"]:
+    """Find which things a command is about, before their place: *put the fruits that spoil quickly on the shelf*.
+
+    The clause can have a subject of its own: *put the napkin that you folded on the plate*.
+    """
+    if [type_at(chunks, k) for k in (at - 2, at - 1)] != ["PUT", "NP"]:
         return None
+    at -= type_at(chunks, at) == "NP"  # 'put the napkin you folded on the plate'
+    by_person = type_at(chunks, at + 1) == "NP" and chunks[at + 1].value.pronoun in PERSONS
+    if type_at(chunks, at) != "REL" and not by_person:
+        return None
+    at += by_person
     verb = chunks[at + 1] if type_at(chunks, at + 1) == "VERB" else None
     group = verb.value if verb is not None else None
-    placeless = ("other", "unknown", "transitive")
-    if not isinstance(group, VerbGroup) or group.kind not in placeless or group.lemma in TRANSITIVE_RELATIONS:
+    placeless = isinstance(group, VerbGroup) and group.kind in ("other", "unknown", "transitive")
+    if not isinstance(group, VerbGroup) or group.lemma in PLACING_VERBS | FIND_VERBS:
+        return None
+    if not by_person and (not placeless or group.lemma in TRANSITIVE_RELATIONS):
         return None
     end = next((k for k in range(at + 2, len(chunks)) if chunks[k].type != "ADVERB"), len(chunks))
     return (end, None) if type_at(chunks, end) in ("PREP", "ADV") else None
@@ -584,14 +610,34 @@ def _replacement(chunks: list[Chunk], at: int) -> Run | None:
     return at + 1, replace(chunks[at], type="PUT", value=replace(group, lemma="put", kind="posture"))
 
 
+def _serving(chunks: list[Chunk], at: int) -> Run | None:
+    """Find a command to serve something somewhere, which puts it there: *serve the sauce on the left of the rice*."""
+    group = chunks[at].value
+    serves = chunks[at].type == "DO" and isinstance(group, VerbGroup) and group.lemma == "serve"
+    if not serves or type_at(chunks, at + 1) != "NP":
+        return None
+    end = at + 2
+    while type_at(chunks, end) in ("AND", "OR", "COMMA", "OF") and type_at(chunks, end + 1) == "NP":
+        end += 2
+    here = type_at(chunks, end) == "PREP" and chunks[end].value.preposition.relation in _SERVED
+    fronted = type_at(chunks, at - 1) == "COMMA" and chunks[0].type == "PREP" and type_at(chunks, end) in ENDS
+    if not here and not fronted:
+        return None
+    return at + 1, replace(chunks[at], type="PUT", value=replace(group, lemma="put", kind="posture"))
+
+
+_SERVED = frozenset({"on", "inside", "left", "right", "in_front", "behind", "next_to", "near", "above", "below"})
+"""Relations that tell where something is served."""
+
 REWRITES = (
     without(_framing), without(_manner), without(_consequence), without(_compared_quality), without(_examples),
     without(_comparison_apart), without(_emphasis),
     without(_first_of_two_commands), without(_used_things), without(_followers),
-    without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement),
+    without(_agent), without(_naming), without(_omission), without(_layer), without(_replacement), without(_serving),
     without(_means), without(_prevented), without(_relative_aside), without(_restriction_of_object),
     without(_measures_apart), without(_beneficiary), without(_purpose), without(_free_place), _without_comments,
-    without(_search), without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
+    without(_search), without(_intended_place),
+    without(_infinitive), without(_caused), without(_sought_in_vain), without(_depicted),
     without(_comparison_of_size), without(_posture_of_the_person), without(_apposition_of_object),
 )  # fmt: skip
 """Rewritings that leave out what tells no place, in their order; most report it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import (
     ENDS,
     PREDICATES,
@@ -16,7 +17,7 @@ from deixis.grammar.english.clauses.rewriting.editing import (
 )
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.function_words import READY
-from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
+from deixis.grammar.english.vocabulary.nouns import PEOPLE, VIEWER_WORDS, last_word
 from deixis.grammar.english.vocabulary.tables import word_set
 
 _CALLING = frozenset({"call", "name", "know", "mark", "label", "refer", "title", "term"})
@@ -24,6 +25,14 @@ _CALLING = frozenset({"call", "name", "know", "mark", "label", "refer", "title",
 
 _NAMES = frozenset({"NP", "ADVERB", "ADJP", "CUT", "NOT", "UNKNOWN"})
 """Chunks in parentheses that say no place: *(A)*, *(mice!)*, *(not the blue one)*."""
+
+_SHOWN = word_set(
+    "see fig figure figures page pages pp photo photos picture pictures diagram illustration shown pictured"
+)
+"""First words in parentheses that send the reader elsewhere: *(see photo)*, *(Figure 2)*."""
+
+_BESIDE_THE_TEXT = word_set("above below left right inset opposite overleaf top bottom")
+"""Single words in parentheses that tell where a picture stands beside the text."""
 
 _ENDEARMENTS = word_set(
     "darling dear dearest love sweetheart honey mum mom mummy mommy dad daddy gran grandma grandpa son daughter mate"
@@ -62,6 +71,18 @@ def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
             leave_out(inside, "what parentheses say under a condition is not read")
             i = (closing or i) + 1
             continue
+        if opened and _is_reference(inside, text) and len(_directions_apart(chunks, text)) < 2:
+            leave_out(inside, "this tells where a picture shows it")
+            i = (closing or i) + 1  # 'bolt the legs to the top (left)'
+            continue
+        if opened and _says_place_again(kept[-1], inside):
+            leave_out(inside, "this says the place before in other words")
+            i = (closing or i) + 1  # 'to its left (your right as you face it), place a cup'
+            continue
+        if opened and _is_clause(inside) and type_at(chunks, (closing or i) + 1) not in ENDS:
+            after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), *inside]
+            i = (closing or i) + 1  # 'put the basket (mine is from a market) on the shelf'
+            continue
         follows_noun = opened and kept[-1].type == "NP"
         doing = inside[1:] if opened and inside[0].type == "ADVERB" else inside
         called = doing[0].value if follows_noun and doing and doing[0].type in ("PART", "TPART") else None
@@ -99,6 +120,35 @@ def without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
         kept.append(chunk)
         i += 1
     return with_last(kept, after)
+
+
+def _is_reference(inside: list[Chunk], text: str) -> bool:
+    """Return True for words that send the reader to a picture or to a page: *(above)*, *(inset)*, *(see page 65)*."""
+    words = text[inside[0].span[0] : inside[-1].span[1]].casefold().replace(".", " ").split()
+    return words[0] in _SHOWN or (len(words) == 1 and words[0] in _BESIDE_THE_TEXT)
+
+
+def _directions_apart(chunks: list[Chunk], text: str) -> list[str]:
+    """Return the directions that stand alone in parentheses, of which several tell things apart."""
+    inner = zip(chunks, chunks[1:], chunks[2:], strict=False)
+    words = (
+        text[slice(*b.span)].casefold() for a, b, c in inner if text[slice(*a.span)] + text[slice(*c.span)] == "()"
+    )
+    return [word for word in words if word in _BESIDE_THE_TEXT]
+
+
+def _says_place_again(before: Chunk, inside: list[Chunk]) -> bool:
+    """Return True for another name of the place before, as a person sees it: *(your right as you face it)*."""
+    place = before.type in ("NP", "ADV") and (before.type == "ADV" or is_place(before.value))
+    mine = inside[0].type == "NP" and is_place(inside[0].value) and inside[0].value.owner is not None
+    return place and mine and inside[0].value.owner.pronoun in VIEWER_WORDS
+
+
+def _is_clause(inside: list[Chunk]) -> bool:
+    """Return True for a clause with a noun as its subject: *(mine is from a market)*, but not *(which is red)*."""
+    types = [chunk.type for chunk in inside if chunk.type != "ADVERB"]
+    verb = next((k for k, kind in enumerate(types) if kind in FINITE), 0)
+    return types[:1] == ["NP"] and verb > 0 and "COMMA" not in types[:verb]
 
 
 def _is_conditional(inside: list[Chunk]) -> bool:

@@ -106,7 +106,11 @@ def _with_place_labels(chunks: list[Chunk]) -> list[Chunk]:
         return chunks
     noun = last_word(place.head.rstrip("0123456789 "))
     holds = noun in VESSELS | HOLDERS or noun in SURFACES
-    if not is_place(place) and (not holds or place.plural or last_word(thing.head) in VESSELS | HOLDERS | SURFACES):
+    listed = (thing.plural and last_word(thing.head) != noun) or any(
+        adjective.dimension in ("position", "rank") for adjective in place.adjectives
+    )  # 'bottom shelf: pots', but not 'jug: tray'
+    vessel = last_word(thing.head) in VESSELS | HOLDERS | SURFACES
+    if not is_place(place) and (not holds or place.plural or (vessel and not listed)):
         return chunks
     if any(chunk.type in FINITE for chunk in chunks[colon:]) or (is_place(place) and place.plural):
         return chunks

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.clauses.rewriting.editing import (
-    ENDS,
     Run,
     apart,
     leave_out,
@@ -21,26 +19,13 @@ from deixis.grammar.english.vocabulary.nouns import (
     AIMED_PARTS,
     HEADED,
     HOLDERS,
-    PEOPLE,
     PLACES_OF,
     SURFACES,
     VESSELS,
     last_word,
 )
 from deixis.grammar.english.vocabulary.relation_words import Preposition
-from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import PUT_VERBS
-
-_STORING = word_set(
-    "shelf drawer rack cupboard cabinet basket bin compartment crate locker tier pocket hook peg closet wardrobe"
-)
-"""Places of which *for* tells what is kept in them: *the top shelf is for glasses*."""
-
-_RESERVING = frozenset({"use", "reserve", "keep", "save", "dedicate"})
-"""Commands whose object with *for* tells what is kept in it."""
-
-_RESERVED = frozenset({"dedicated", "dedicate", "reserved", "reserve", "meant", "mean", "intended", "intend"})
-"""Participles before *for* and *to* that tell what a place is for."""
 
 _SEATS = frozenset({"place", "pride", "spot", "position", "seat"})
 
@@ -51,71 +36,6 @@ _EXACTLY = frozenset({"just", "directly", "immediately", "right", "slightly"})
 _OF_TOOLS = frozenset({"handle", "blade", "tine", "prong", "bowl", "spout"})
 
 _GAPS = frozenset({"gap", "space", "distance", "clearance"})
-
-
-def _with_purposes_of_places(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *the top shelf is for glasses* as *glasses are on the top shelf*; also *is reserved for*."""
-    cuts = [i for i, chunk in enumerate(chunks) if chunk.type == "CUT"]
-    found: list[Chunk] = []
-    for start, end in pairwise([0, *cuts, len(chunks)]):
-        found += _with_purpose_of_place(chunks[start:end])
-    return found
-
-
-def _with_purpose_of_place(whole: list[Chunk]) -> list[Chunk]:
-    chunks = [chunk for chunk in whole if chunk.type != "ADVERB"]
-    first = next((i for i, chunk in enumerate(chunks) if chunk.type not in ("CUT", "COMMA")), 0)
-    if chunks and chunks[first].type in ("PUT", "DO", "FIND") and chunks[first].value.lemma in _RESERVING:
-        return _with_reserved_places(chunks, first) or whole
-    types = [type_at(chunks, first + k) for k in range(4)]
-    is_reserved = types[2] == "PART" and chunks[first + 2].value.lemma in _RESERVED
-    at = first + 2 + is_reserved
-    if types[:2] != ["NP", "BE"] or type_at(chunks, at) != "PREP" or type_at(chunks, at + 1) != "NP":
-        return whole
-    place, be, relator, thing = chunks[first], chunks[first + 1], chunks[at].value, chunks[at + 1].value
-    end = at + 2
-    while [type_at(chunks, end), type_at(chunks, end + 1)] == ["AND", "NP"]:
-        end += 2
-    noun = last_word(place.value.head)
-    single = (
-        be.value.positive and (is_reserved or not place.value.plural) and be.value.modal in (None, "should", "must")
-    )
-    fits = relator.preposition.phrase == "for" or (is_reserved and relator.preposition.phrase == "to")
-    named = _names_things(thing)
-    if not (single and fits and named and noun in _STORING and type_at(chunks, end) in ENDS):
-        return whole
-    inside = noun in VESSELS | HOLDERS
-    spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
-    return [*chunks[:first], *chunks[at + 1 : end], be, replace(chunks[at], value=spot), place, *chunks[end:]]
-
-
-def _names_things(phrase: NounPhrase) -> bool:
-    """Return True for *cups* and *the bread*, but not for *transport*, which may be an act, nor for persons."""
-    thing = bool(phrase.head) and last_word(phrase.head) not in PEOPLE and not phrase.pronoun
-    return thing and (phrase.plural or phrase.determiner == "the" or phrase.owner is not None)
-
-
-def _with_reserved_places(chunks: list[Chunk], at: int) -> list[Chunk] | None:
-    """Return *use the upper rack for cups and the lower rack for plates* as *put cups in the upper rack and …*."""
-    if not chunks[at].value.positive:
-        return None
-    made: list[Chunk] = [*chunks[:at], replace(chunks[at], type="PUT", value=VerbGroup("put", "posture", "base"))]
-    at += 1
-    while [type_at(chunks, at + k) for k in range(3)] == ["NP", "PREP", "NP"]:
-        place, relator, thing = chunks[at].value, chunks[at + 1].value, chunks[at + 2].value
-        noun = last_word(place.head)
-        kept = _names_things(thing) and (bool(place.adjectives) or not place.plural)
-        if relator.preposition.phrase != "for" or noun not in _STORING or not kept:
-            return None
-        inside = noun in VESSELS | HOLDERS
-        spot = Relator(Preposition("in" if inside else "on", "inside" if inside else "on"))
-        made += [chunks[at + 2], replace(chunks[at + 1], value=spot), chunks[at]]
-        at += 3
-        if type_at(chunks, at) not in ("AND", "COMMA") or type_at(chunks, at + 1) != "NP":
-            return [*made, *chunks[at:]] if type_at(chunks, at) in ENDS else None
-        made.append(chunks[at])
-        at += 1
-    return None
 
 
 def _place_taken(chunks: list[Chunk], at: int) -> Run | None:
@@ -348,7 +268,7 @@ def _with_options_apart(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_options_apart, _with_owners_of_places, _with_purposes_of_places, _with_measures_denied, _with_destinations,
+    _with_options_apart, _with_owners_of_places, _with_measures_denied, _with_destinations,
     without(_place_taken), _with_gaps, _with_aimed_parts, _with_shared_objects,
     _with_aims_of_subjects, _with_places_of_nearest,
 )  # fmt: skip

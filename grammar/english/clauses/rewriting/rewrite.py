@@ -5,6 +5,7 @@ from __future__ import annotations
 from deixis.grammar.english.chunking.chunk import Chunk
 from deixis.grammar.english.clauses.rewriting import (
     asides,
+    assignments,
     commands,
     ellipses,
     insertions,
@@ -14,7 +15,7 @@ from deixis.grammar.english.clauses.rewriting import (
     word_order,
 )
 
-STAGES = (ellipses, insertions, lists, labels, commands, asides, word_order, placings)
+STAGES = (ellipses, insertions, lists, labels, assignments, commands, asides, word_order, placings)
 """Modules whose rewritings follow each other."""
 
 

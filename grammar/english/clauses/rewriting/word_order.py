@@ -19,7 +19,7 @@ from deixis.grammar.english.clauses.rewriting.editing import (
     word_of,
 )
 from deixis.grammar.english.tree import NounPhrase
-from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.nouns import GENERAL, HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.vocabulary.relation_words import Preposition
 from deixis.grammar.english.vocabulary.verbs import verb_forms
 
@@ -300,6 +300,23 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_clefts(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the last thing that goes on the tray is the jug* as *the jug goes on the tray*."""
+    for i in range(len(chunks) - 4):
+        general = chunks[i].type == "NP" and last_word(chunks[i].value.head) in GENERAL and not chunks[i].value.members
+        if not general or type_at(chunks, i + 1) != "REL" or type_at(chunks, i - 1) not in ENDS | {"ADVERB"}:
+            continue
+        be = next((k for k in range(i + 3, len(chunks) - 1) if chunks[k].type in FINITE | BREAKS), len(chunks))
+        end = be + 2
+        while type_at(chunks, end) in ("AND", "COMMA", "OF") and type_at(chunks, end + 1) == "NP":
+            end += 2
+        placed = any(chunk.type in ("PREP", "ADV") for chunk in chunks[i + 2 : be])
+        named = type_at(chunks, be) == "BE" and type_at(chunks, be + 1) == "NP" and type_at(chunks, end) in ENDS
+        if placed and named and chunks[be].value.positive and type_at(chunks, i + 2) in FINITE:
+            return [*chunks[:i], *chunks[be + 1 : end], *chunks[i + 2 : be], *chunks[end:]]
+    return chunks
+
+
 def _with_objects_first(chunks: list[Chunk]) -> list[Chunk]:
     """Return *the tin with the buttons I keep at its left* as *the tin with the buttons is at its left*."""
     for i in range(len(chunks) - 4):
@@ -406,7 +423,8 @@ def _with_filled_regions(chunks: list[Chunk]) -> list[Chunk]:
 
 
 REWRITES = (
-    _with_orders, _with_filled_regions, _with_places_where, _with_placed_subjects, _with_verbs_after_places,
+    _with_clefts, _with_orders, _with_filled_regions, _with_places_where, _with_placed_subjects,
+    _with_verbs_after_places,
     _with_participles_of_posture, _without_resumed_subjects, _with_existential_have, _with_parts_after_verbs,
     _with_relative_places, _with_objects_after_verbs, _with_objects_first, _with_contact_clauses, without(_stranded),
     _with_places_before_verbs,

@@ -37,9 +37,10 @@ def relation(
 ) -> None:
     """Print the meaning of a relation word: both literal readings, and the graded model, learned or shipped."""
     from deixis.errors import UnknownTermError
-    from deixis.ontology.relations.relation import nearest, plain_phrase
+    from deixis.ontology.relations.relation import plain_phrase
     from deixis.ontology.tbox import default_ontology
     from deixis.report.descriptions.relation import relation_lines, relation_to_dict
+    from deixis.spelling import nearest
 
     relations = default_ontology().relations
     found = relations.by_word.get(plain_phrase(word))

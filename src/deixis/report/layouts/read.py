@@ -65,8 +65,7 @@ def _content(fact: StatedFact) -> str:
 
 def _marks(fact: StatedFact) -> str:
     content = fact.content
-    marks = [name for name in ("past", "uncertain") if getattr(fact, name)]
-    marks += [fact.condition] if fact.condition else []
+    marks = list(fact.reservations)
     marks += [f"choice {fact.alternative}"] if fact.alternative is not None else []
     marks += ["optional"] if content.optional else []
     marks += [f"weight {content.weight:g}"] if content.weight != 1 else []

@@ -14,19 +14,31 @@ from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.grammar.activities import announced_thing
 from deixis.grammar.recall.acts import told_act
-from deixis.grammar.recall.questions import is_question
+from deixis.grammar.recall.questions import RecallQuestionError, is_question, read_question
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.predicates import ACTS, CALLED, CONTRADICTED, EXPECTED, IS_A, SAID, SAME_AS, SAYS
+from deixis.memory.episodes.predicates import (
+    ACTS,
+    CALLED,
+    CONTRADICTED,
+    EXPECTED,
+    FAULT,
+    IS_A,
+    LAYOUT,
+    SAID,
+    SAME_AS,
+    SAYS,
+)
 from deixis.memory.errors import MemoryBusyError, MemoryWriteError
 from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line
-from deixis.reasoning.errors import NothingFoundError
+from deixis.reasoning.errors import InconsistencyError, NothingFoundError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
-from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
+from deixis.robot.diary import NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
+from deixis.robot.ids import IdError
 from deixis.robot.kept import KeptElsewhere
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
@@ -47,6 +59,9 @@ _WRONG = re.compile(
 
 _ASKED_NOW = re.compile(r"\W*(?:what|which|is|are)\b", re.IGNORECASE)
 """Beginning of such a question, which recognised speech has without a question mark."""
+
+_FIRST_VERB = re.compile(r"\b(?:is|are|(?P<past>was|were|did|has|have))\b", re.IGNORECASE)
+"""Auxiliary verb of a question."""
 
 _TOLD = re.compile(r"\b(tell|told|say|said)\b", re.IGNORECASE)
 """Words of questions about what was said."""
@@ -308,6 +323,9 @@ class Learner(Module):
             if not noted:
                 self._say(NOT_FOUND, at, board)
             return
+        except (InconsistencyError, IdError) as error:
+            self._say(f"I learned nothing: {_without_place(error)}.", at, board)
+            return
         except DeixisError as error:
             if noted:
                 return
@@ -404,7 +422,7 @@ class Learner(Module):
         """Return the answer to a question: what is wrong with the table, or what was when."""
         from deixis.workflows.knowledge.recall import recall
 
-        if not _WRONG.search(question) or _TOLD.search(question):
+        if not _WRONG.search(question) or _TOLD.search(question) or _is_of_another_time(question):
             try:
                 found = recall(question, board, at, self.robot.session.ontology, by)
                 return found.answer if found.known else f"I do not know: {found.reason}."
@@ -428,9 +446,21 @@ class Learner(Module):
         self._outbox.add(Add(episodic(self._outbox.new_id(board), statement, start=at, finish=finish, source=source)))
 
 
+def _is_of_another_time(question: str) -> bool:
+    """Return whether a question about mistakes, such as *what was wrong at noon?*, is about another time than now."""
+    try:
+        read = read_question(question)
+    except RecallQuestionError:
+        return False
+    verb = _FIRST_VERB.search(question)
+    is_past = verb is not None and verb["past"] is not None
+    return read.kind in ("fault", "gone", "whether_did") and (is_past or read.when.kind not in ("unstated", "now"))
+
+
 def _without_place(error: DeixisError) -> str:
-    """Return the first line of an error about words that were said, without the place in a file."""
-    return re.sub(r"^<text>(?::\d+)*: ", "", str(error).splitlines()[0]).rstrip(".")
+    """Return the first line of an error about words that were said, without places in a file."""
+    line = re.sub(r"^<text>(?::\d+)*: | \((?:<text>(?::\d+)*(?:, )?)+\)", "", str(error).splitlines()[0])
+    return line.removeprefix("the script contradicts itself, nothing was learned: ").rstrip(".")
 
 
 def _layout_words(name: str) -> str:

@@ -8,9 +8,8 @@ from pathlib import Path
 
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.episode import EpisodicFluent
-from deixis.memory.episodes.predicates import AT, CALLED, IS_A, NOT_CALLED, POINTED_AT, SAID, SAYS
+from deixis.memory.episodes.predicates import AT, CALLED, FAULT, IS_A, LAYOUT, NOT_CALLED, POINTED_AT, SAID, SAYS
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.senses import NOTICED, TABLE, VIEW_ENDING
 from deixis.workflows.scenes.point import SAME_MOMENT
 

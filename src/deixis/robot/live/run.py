@@ -13,11 +13,10 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.experiences import finish_recording, start_recording
 from deixis.memory.episodes.fluents.changes import Add, Finish, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.predicates import AT, IS_A, SAID, SAYS
+from deixis.memory.episodes.predicates import AT, FAULT, IS_A, LAYOUT, SAID, SAYS
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import MAX_SECONDS, Bounds
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.learner import DONE
 from deixis.robot.live.senses import BEGAN, DROPPED, ENDED, MIN_DURATION, NOTICED, TABLE, TYPED
 from deixis.robot.live.story import StorySettings

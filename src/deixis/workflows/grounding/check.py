@@ -24,8 +24,8 @@ from deixis.learning.lessons.scene_evidence import (
 )
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
+from deixis.reasoning.entailment.claim_facts import implications_with_claims
 from deixis.reasoning.entailment.conflict import find_conflict
-from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError, require_time_limit
 from deixis.reasoning.grounding.answers.claims import violated
 from deixis.reasoning.grounding.engines.registry import engine_named
@@ -144,7 +144,7 @@ def check(
         concept = knowledge.layout(str(layout))
     scene, graph = as_scene(scene), concept.graph(known.relations)
     meaning = SHIPPED if knowledge is None else knowledge.meaning()
-    implied = Implications(graph)
+    implied = implications_with_claims(graph, concept.claims)[1][-1]
     # a check takes labels as identities
     evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0, claims=concept.claims)
     evidence = evidence.with_surface(surface_thing(concept.surface, graph, scene, known.kinds))

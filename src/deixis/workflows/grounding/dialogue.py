@@ -12,7 +12,6 @@ from typing import Any, Protocol, TextIO
 import numpy as np
 
 from deixis.errors import DeixisError
-from deixis.ontology.relations.relation import nearest
 from deixis.ontology.strict_json import parse_json
 from deixis.printable import shortened, visible_line
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
@@ -27,6 +26,7 @@ from deixis.reasoning.grounding.questions.selection import (
     answers_of,
 )
 from deixis.reasoning.grounding.questions.situation import Situation, spoken
+from deixis.spelling import nearest
 from deixis.text_files import read_text
 
 _WORDS = {

@@ -30,6 +30,7 @@ from deixis.learning.lessons.scene_evidence import (
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.lessons.types import Match
 from deixis.perception.scene import Scene
+from deixis.reasoning.entailment.claim_facts import implications_with_claims
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.reasoning.errors import LimitError, OutOfTimeError, SettingError, require_time_limit
@@ -65,6 +66,9 @@ SIDES_HELD = {ViewpointName.STATED: 1, ViewpointName.QUARTER: 3, ViewpointName.U
 MIN_SHORTLISTED, PAIRS_PER_SECOND = 10, 4e5
 """Minimum number of things per object at which a shortlist pays off, and approximate number of pairs of things that
 grounding processes in a second."""
+
+MAX_LISTED = 3
+"""Maximum number of facts that a note lists."""
 
 Stage = Callable[[str], AbstractContextManager[None]]
 """Function that returns a context for one stage of the work, from the name of the stage."""
@@ -181,11 +185,13 @@ class GroundingRequest:
 
     @cached_property
     def conflict(self) -> Conflict | None:
-        """Minimal set of facts that cannot hold together, if the script contradicts itself.
+        """Minimal set of facts, stated or implied by claims, that cannot hold together; None for a consistent script.
 
         Raises OutOfTimeError if the time limit is reached first, and LimitError if there are too many objects.
         """
-        return find_conflict(self.implied)
+        if not self.script.claims:
+            return find_conflict(self.implied)
+        return find_conflict(implications_with_claims(self.graph, self.script.claims, self.implied.time_limit)[1][-1])
 
     @cached_property
     def shortlisted(self) -> bool:
@@ -380,7 +386,7 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
 
     deadline, contradiction = request.due, _contradiction(request)
     notes = unit_notes(request.scene, request.script.objects, request.script.ontology)
-    notes += viewpoint_notes(request.script.viewpoint, request.scene)
+    notes += viewpoint_notes(request.script.viewpoint, request.scene) + _unused_notes(request.script)
     stated = request.scene.from_viewer()
     side = None
     if request.viewpoint != ViewpointName.STATED:
@@ -420,6 +426,16 @@ def _surface_match(name: str, thing: str) -> Match:
     return Match(
         object=name, perceived=thing, score=1.0, similarity=1.0, decided=True, alternatives=(), probability=None
     )
+
+
+def _unused_notes(script: Script) -> tuple[str, ...]:
+    """Return a note about the facts that a text states under a condition, as past or as uncertain."""
+    unused = [] if script.reading is None else [fact for fact in script.reading.stated if not fact.asserted]
+    if not unused:
+        return ()
+    listed = [f"{fact.content} ({', '.join(fact.reservations)})" for fact in unused[:MAX_LISTED]]
+    more = [f"{len(unused) - MAX_LISTED} more"] if len(unused) > MAX_LISTED else []
+    return (f"the text does not assert these facts, which were not used: {'; '.join([*listed, *more])}",)
 
 
 def _contradiction(request: GroundingRequest) -> tuple[str, ...]:

@@ -24,7 +24,6 @@ from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Sourc
 from deixis.memory.episodes.subscription import Subscription
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph
-from deixis.ontology.relations.relation import nearest
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
@@ -32,6 +31,7 @@ from deixis.reasoning.errors import LimitError
 from deixis.reasoning.temporal.errors import TemporalConflictError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.reasoning.temporal.timeline import Timeline
+from deixis.spelling import nearest
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script

@@ -24,7 +24,9 @@ from deixis.memory.episodes.predicates import (
     AT,
     CONTRADICTED,
     EXPECTED,
+    FAULT,
     IS_A,
+    LAYOUT,
     MOVED,
     NAMED,
     POINTED_AT,
@@ -74,10 +76,22 @@ SIDES = frozenset({"left", "right", "middle", "centre", "center", "front", "back
 OF_EXPECTED = {"unseen": EXPECTED, "contradicted": CONTRADICTED, "confirmed": SAME_AS}
 """Predicate that answers each kind of question about what persons said is there."""
 
-EVENTS = {"gone": Event.GOES, "come": Event.COMES, "moved": Event.MOVES}
+OF_SITUATION = {
+    "called": NAMED,
+    "whether_called": NAMED,
+    "layout": frozenset({LAYOUT}),
+    "fault": frozenset({FAULT}),
+    "colour": frozenset({"colour"}),
+}
+"""Predicates that answer questions about the names and colours of things, and about the layout and its mistakes."""
+
+EVENTS = {"gone": Event.GOES, "come": Event.COMES, "moved": Event.MOVES, "returned": Event.COMES}
 
 EVENT_OF_ACT = {PUT: Event.COMES, MOVED: Event.MOVES, TOOK: Event.GOES}
 """Change of the presence of a thing that each act of a person is."""
+
+PRESENT_SECONDS = 60.0
+"""Seconds since a person was last seen or heard up to which the person counts as there now."""
 
 MAX_AT_ONCE = 2
 """Maximum number of things that persons bring or take at the same time; more were found by a new look at the table."""
@@ -294,8 +308,10 @@ class _Remembering:
         words = noun if noun in ANY else singular(noun)
         if words in ANY:
             return None
+        if noun in PRONOUNS:
+            raise _NotKnownError(f"the question does not say what '{noun}' is")
         found = {thing for thing in self.things if thing.lower() in (noun, noun.replace(" ", "_"))}
-        found |= {thing for thing, kinds in self.names.items() if any(self._fits(kind, words) for _, kind in kinds)}
+        found |= self._called(words, exactly=words == noun)
         adjective, _, rest = words.partition(" ")
         if not found and rest:  # the red ball
             try:
@@ -304,11 +320,25 @@ class _Remembering:
                 of_noun = frozenset()
             found = {thing for thing in self.things if adjective in self.said_of[thing]}
             found &= self.things if of_noun is None else of_noun
+        parts = re.split(r" (?:or|and) ", noun)
+        if not found and len(parts) > 1:  # the fork and the cup
+            several = [self.resolve(part) for part in parts]
+            return None if None in several else frozenset().union(*(each or () for each in several))
         if not found:
             known = sorted({self.name(thing) for thing in self.things})
             has = f"; it has: {', '.join(known[:8])}{' …' if len(known) > 8 else ''}" if known else ", which is empty"
             raise _NotKnownError(f"nothing on the blackboard is called '{noun}'{has}")
         return frozenset(found)
+
+    def _called(self, noun: str, exactly: bool) -> set[str]:
+        """Return the things that had a name, or that of a narrower kind.
+
+        If ``exactly`` is True, things with the name of a narrower kind are meant only if no thing has that name itself.
+        """
+        by_name = {thing: {plain_name(kind) for _, kind in kinds} for thing, kinds in self.names.items()}
+        own = {thing for thing, kinds in by_name.items() if noun.replace(" ", "_") in kinds}
+        fitting = {thing for thing, kinds in by_name.items() if any(self._fits(kind, noun) for kind in kinds)}
+        return (own if exactly else set()) or fitting
 
     def _fits(self, category: str, noun: str) -> bool:
         plain, wanted = plain_name(category).replace("_", " ").lower(), noun.lower()
@@ -326,6 +356,8 @@ class _Remembering:
             return (-math.inf, now, Pick.ALL) if event else (now, now, Pick.ALL)
         if kind == "now":
             return now, now, Pick.ALL
+        if kind == "ever":
+            return -math.inf, now, Pick.ALL
         if kind == "before":
             return -math.inf, now, Pick.LAST
         if kind == "at_first":
@@ -391,6 +423,8 @@ class _Remembering:
         kind = question.kind
         if kind == "why":
             raise _NotKnownError("the reasons for which persons do things are not recorded")
+        if kind == "future":
+            raise _NotKnownError("what will happen is not recorded")
         things = None
         if question.thing is not None and kind != "said_about":
             things = self._things_of(question.thing) if kind in BY_PERSON else self.resolve(question.thing)
@@ -411,6 +445,10 @@ class _Remembering:
             return self._search_of_words(question)
         if kind == "where_put":
             return self._search_where_put(question, things)
+        if kind in OF_SITUATION:
+            return self._search_of_situation(question, things)
+        if kind in ("unmoved", "always"):
+            return self._search_of_lasting(question, things)
         start, end, pick = self.window(question.when, event=False)
         edge = Edge.FINISHES if pick is Pick.LAST else Edge.STARTS if pick is Pick.FIRST else Edge.HOLDS
         if kind in ("when_held", "when_there"):
@@ -491,6 +529,9 @@ class _Remembering:
         if question.event == "shown":
             return FluentSearch(things, NAMED, None, frozenset({Origin.SHOWN}), None, Edge.STARTS, start, end, pick)
         event = EVENTS[question.event or question.kind]
+        if question.event == "returned":  # after the thing went
+            gone = self.event_search(Event.GOES, things, -math.inf, self.asked).run(self.board)
+            start = max(start, min((each.finish.lower for each in gone), default=self.asked))
         return self.event_search(event, things, start, end, pick)
 
     def _search_of_statements(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
@@ -508,6 +549,30 @@ class _Remembering:
         origins = frozenset({Origin.SHOWN, Origin.SAID} if question.kind == "who" else {Origin.SHOWN})
         return FluentSearch(things, NAMED, None, origins, by, Edge.STARTS, start, end, pick)
 
+    def _search_of_situation(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        """Return the search of names or colours of things, or of the layout or its mistakes, that held at a time."""
+        start, end, pick = self.window(question.when, event=False)
+        edge = Edge.FINISHES if pick is Pick.LAST else Edge.STARTS if pick is Pick.FIRST else Edge.HOLDS
+        held = FluentSearch(things, OF_SITUATION[question.kind], edge=edge, start=start, end=end, pick=pick)
+        if question.kind != "whether_called":
+            return held
+        kind = singular(question.other or "")
+        so_called = [each.id for each in held.run(self.board) if self._fits(str(each.statement.object), kind)]
+        return replace(held, ids=frozenset(so_called))
+
+    def _search_of_lasting(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        """Return the search of the things that did not move, or were always there, in the window of a question."""
+        start, end, _ = self.window(question.when, event=True)
+        first = min((each.start.upper for each in self._all_places()), default=start)
+        start = max(start, first)
+        places = FluentSearch(things, self.places, start=end, end=end)
+        changed = [self.event_search(Event.MOVES, things, start, end)]
+        if question.kind == "always":
+            changed = [self.event_search(event, things, start + MOMENT, end) for event in (Event.COMES, Event.GOES)]
+        others = {each.statement.subject for search in changed for each in search.run(self.board)}
+        lasting = {each.statement.subject for each in places.run(self.board)} - others
+        return replace(places, subjects=frozenset(lasting))
+
     def _search_of_happenings(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
         """Return the search of what came, moved and went, with the acts of the persons who did it."""
         start, end, pick = self.window(question.when, event=True)
@@ -522,6 +587,7 @@ class _Remembering:
     def _search_of_presence(self, question: RecallQuestion) -> FluentSearch:
         """Return the search of what shows that persons were there: what they did, pointed at and said."""
         start, end, pick = self.window(question.when, event=True)
+        start -= PRESENT_SECONDS if question.when.kind == "now" else 0.0
         end = min(end, self.asked - MOMENT)  # without the question itself
         shown = ACTS | {SAID, POINTED_AT}
         pick = Pick(question.order) if question.order else pick
@@ -588,7 +654,7 @@ class _Remembering:
 
     def _search_where_put(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
         """Return the search of where things are since a person put them there."""
-        acts = replace(self._search_of_acts(question, things), pick=Pick.LAST).run(self.board)
+        acts = replace(self._search_of_acts(question, things), pick=Pick(question.order or "last")).run(self.board)
         if not acts:
             raise _NotKnownError(self._reason(question))
         first, last = min(each.start.lower for each in acts), max(each.start.upper for each in acts)
@@ -804,10 +870,13 @@ class _Remembering:
         return bool(own) and min(own) <= min(times)
 
     def _actual_places(self, question: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
-        """Return where the thing of a yes-or-no question was instead, if that is recorded."""
+        """Return where the thing of a yes-or-no question was instead, or what it is called, if that is recorded."""
+        if question.kind == "whether_called":
+            return replace(search, ids=None).run(self.board)
         if question.kind == "whether_did" and question.event != "shown":
             held = replace(search, edge=Edge.HOLDS, event=None, pick=Pick.ALL, predicates=self.relations or self.places)
-            return held.run(self.board)
+            at_other_times = replace(search, start=-math.inf, end=self.asked)
+            return held.run(self.board) or at_other_times.run(self.board)
         if question.kind not in ("whether", "whether_there"):
             return ()
         wrong = replace(search, predicates=frozenset({CONTRADICTED}), edge=Edge.STARTS, objects=None)
@@ -815,7 +884,12 @@ class _Remembering:
         elsewhere = replace(search, predicates=self.relations or self.places, objects=None).run(self.board)
         if question.kind == "whether" and (elsewhere or missing):
             return elsewhere or missing
-        return missing or (self._last_places(search) if question.when.kind in ("unstated", "now") else ())
+        if missing or question.when.kind in ("unstated", "now"):
+            return missing or self._last_places(search)
+        at_other_times = replace(search, predicates=self.relations or self.places, objects=None, ids=None)
+        return (
+            () if search.subjects is None else replace(at_other_times, start=-math.inf, end=self.asked).run(self.board)
+        )
 
     def _reason(self, question: RecallQuestion) -> str:
         """Return why nothing answers a question."""
@@ -832,8 +906,11 @@ class _Remembering:
             return f"no place of {definite(question.thing or '')} is recorded"
         if question.kind == "where" and question.when.kind == "before":
             return f"no place of {definite(question.thing or '')} has ended; it is where it was at first"
+        if question.kind == "whether_present" and question.when.kind == "now":
+            earlier = self.answer(replace(question, kind="who_there", when=When(), order="last"))
+            return f"this person was not seen or heard just now; {earlier.answer.removesuffix('.')}"
         what = _UNRECORDED.get(question.kind, "nothing that answers it is recorded")
-        return what if question.when.kind in ("unstated", "now") else f"{what} for that time"
+        return what if question.when.kind in ("unstated", "now", "ever") else f"{what} for that time"
 
     def _reason_of_where_put(self, question: RecallQuestion) -> str:
         """Return why it is not known where a person put a thing, and where the thing is."""
@@ -853,7 +930,7 @@ def _time_of(act: str, change: EpisodicFluent) -> float:
     return change.finish.upper if act == TOOK else change.start.lower
 
 
-_DID = {"gone": "went", "come": "came", "moved": "moved"}
+_DID = {"gone": "went", "come": "came", "moved": "moved", "returned": "came back"}
 
 _UNRECORDED = {
     "gone": "nothing is recorded as taken away",
@@ -868,6 +945,13 @@ _UNRECORDED = {
     "how_many_persons": "no person was seen or heard",
     "whether_present": "this person was not seen or heard",
     "present": "nothing is recorded as there",
+    "called": "no name of it is recorded",
+    "whether_called": "no name of it is recorded",
+    "layout": "no layout of the table is recorded",
+    "fault": "nothing is recorded as wrong",
+    "colour": "no colour of it is recorded",
+    "unmoved": "no thing is recorded as unmoved",
+    "always": "no thing is recorded as always there",
     "unseen": "nothing that was said to be there is still to be seen",
     "contradicted": "nothing that was said to be there was found missing",
     "confirmed": "nothing that was said to be there was seen",

@@ -34,6 +34,9 @@ MIN_SUPPORT_DEGREE = 0.5
 DIRECTIONS = ("left", "right", "in_front", "behind", "near")
 """Relations that say where a thing is otherwise; of equal ones, the first."""
 
+DIAGONALS = ("top_left", "top_right", "bottom_left", "bottom_right")
+"""Relations that say where a thing is if no direction does."""
+
 COARSE = 0.5
 """Factor on the degree of *near*, which says less than a direction."""
 
@@ -122,6 +125,11 @@ class RecordedBoxes:
         own = self._index(fluent)
         if own is None:
             return None
+        best = self._best(own, landmarks, at, (*SUPPORT, *DIRECTIONS))
+        return best if best is not None else self._best(own, landmarks, at, DIAGONALS)
+
+    def _best(self, own: int, landmarks: frozenset[str], at: float, words: Sequence[str]) -> RelatedPlace | None:
+        """Return the one of some relations that says best where a thing in its box is at a time."""
         box = self._fluents[own]
         at = max(min(at, box.finish.upper - MIN_DURATION), box.start.lower)
         best: tuple[tuple[float, float, float], int, str] | None = None
@@ -132,7 +140,7 @@ class RecordedBoxes:
                 if not start.lower <= at < finish.upper:
                     continue
                 duration = _duration(start, finish)
-                for word in (*SUPPORT, *DIRECTIONS):
+                for word in words:
                     degree = float(self._degree(word)[own, other]) * (COARSE if word == "near" else 1.0)
                     lasting = np.inf if word in SUPPORT and degree >= MIN_SUPPORT_DEGREE else duration
                     fits = lasting, round(degree, 1), -float(np.linalg.norm(centres[own] - centres[other]))

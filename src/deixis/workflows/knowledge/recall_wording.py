@@ -15,7 +15,9 @@ from deixis.memory.episodes.predicates import (
     AT,
     CONTRADICTED,
     EXPECTED,
+    FAULT,
     IS_A,
+    LAYOUT,
     MOVED,
     NAMED,
     PUT,
@@ -25,6 +27,7 @@ from deixis.memory.episodes.predicates import (
     TOOK,
 )
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.things.kinds import with_article
 
 if TYPE_CHECKING:
     from deixis.workflows.knowledge.recall_answer import Recall, Recalled
@@ -49,7 +52,12 @@ def sentence(found: Recall) -> str:
         sure = max(fact.fluent.certainty for fact in facts)
         statement = "; ".join(distinct(fact_words(found, fact) for fact in facts))
         return f"Probably{'' if sure >= 0.5 else ' not'}: {statement}."
-    if kind in ("whether", "whether_there", "whether_did_by"):
+    if kind in (
+        "whether",
+        "whether_there",
+        "whether_did_by",
+        "whether_called",
+    ) and not question.text.lower().startswith("what"):
         return f"Yes: {'; '.join(fact_words(found, fact) for fact in facts)}."
     if kind == "how_many_did_by":
         number = len({fact.fluent.statement.object for fact in facts})
@@ -68,7 +76,9 @@ def sentence(found: Recall) -> str:
         ending = "; the places of persons are not recorded" if kind == "where_person" else ""
         return f"{starts.get(kind, '')}{'; '.join(sentences)}{ending}."
     if kind in ("gone", "come", "moved", "when_did", "whether_did", "how_often"):
-        words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[question.event or kind]
+        words = {"gone": "went", "come": "came", "returned": "came back", "moved": "was moved", "shown": "was shown"}[
+            question.event or kind
+        ]
         edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
         sentences = distinct(f"{definite(fact.name)} {words} {_time_phrase(found, end.lower, end.upper)}{_source(fact)}"
                          for fact, end in zip(facts, edge, strict=True))  # fmt: skip
@@ -157,7 +167,13 @@ def fact_words(found: Recall, fact: Recalled) -> str:
                 return f"{text}{since or start + finish}, {where}{_source(fact)}"
             text = f"{definite(fact.name)} {verb} {where}"
     elif statement.predicate == IS_A:
-        text = f"{statement.subject} {verb} a {fact.other}"
+        text = f"{statement.subject} {verb} {with_article(fact.other or '')}"
+    elif statement.predicate == LAYOUT:
+        text = f"the layout {verb} '{statement.object}'"
+    elif statement.predicate == FAULT:
+        text = f"{words},"
+    elif statement.predicate == "colour":
+        text = f"{definite(fact.name)} {verb} {statement.object}"
     else:
         words = _phrase(statement.predicate)
         other = "" if fact.other is None else f" {definite(fact.other)}"
@@ -240,7 +256,21 @@ def _source(fact: Recalled) -> str:
 
 
 def _time_phrase(found: Recall, lower: float, upper: float) -> str:
-    return f"at {_time(found, lower, upper)}" if lower == upper else _time(found, lower, upper)
+    """Return a time in words; for *how long ago …?* with the time that has passed."""
+    time = f"at {_time(found, lower, upper)}" if lower == upper else _time(found, lower, upper)
+    if not found.question.asks_how_long_ago or math.isinf(upper):
+        return time
+    return f"{time}, {_duration(found.asked - upper)} ago"
+
+
+def _duration(seconds: float) -> str:
+    """Return a duration in the one or two largest units: *1 hour 10 minutes*."""
+    minutes, rest = divmod(max(round(seconds), 0), 60)
+    hours, minutes = divmod(minutes, 60)
+    days, hours = divmod(hours, 24)
+    parts = [(days, "day"), (hours, "hour"), (minutes, "minute"), (rest, "second")]
+    first = next((number for number, (amount, _) in enumerate(parts) if amount), len(parts) - 1)
+    return " ".join(count(amount, unit) for amount, unit in parts[first : first + 2] if amount) or "0 seconds"
 
 
 def _time(found: Recall, lower: float, upper: float) -> str:

@@ -181,10 +181,11 @@ def unlearn(
         If a view cannot be read; nothing is changed then.
     """
     chosen = _Chosen(selection)
-    lessons = _lessons(chosen, knowledge) if knowledge.exists() else ()
-    empty, revised = _revised(chosen, knowledge, lessons)
-    lessons = (*lessons, *empty)
     with open_episodes(knowledge.path) as board, ExitStack() as held:
+        spoken = set() if board is None or not knowledge.exists() else _lessons_of_words(board, chosen, knowledge)
+        lessons = _lessons(chosen, knowledge, spoken) if knowledge.exists() else ()
+        empty, revised = _revised(chosen, knowledge, lessons)
+        lessons = (*lessons, *empty)
         memory = views.memory() if views.exists() else None
         if memory is not None:
             held.enter_context(memory.exclusive())
@@ -213,6 +214,20 @@ def _teaching_events(lessons: Sequence[str], knowledge: KnowledgeStore) -> set[s
     known = events_of_lessons(knowledge.memory().store)
     kept = {event for lesson, events in known.items() if lesson not in lessons for event in events}
     return {*lessons, *(event for lesson in lessons for event in known.get(lesson, ()))} - kept
+
+
+def _lessons_of_words(board: Blackboard, chosen: _Chosen, knowledge: KnowledgeStore) -> set[str]:
+    """Return the lessons that only the sentence taught which is taken back, in the words in which it was said.
+
+    Their own text may differ: it has neither the name of the layout nor the ids of things.
+    """
+    from deixis.memory.semantic.rdf.links import events_of_lessons
+
+    if chosen.sentence is None:
+        return set()
+    said = {each.source.event for each in board.holding() if chosen.holds_of_fluent(each, board.moment)}
+    known = events_of_lessons(knowledge.memory().store)
+    return {lesson for lesson, events in known.items() if events and said.issuperset(events)}
 
 
 def _spoken(board: Blackboard, chosen: _Chosen) -> set[str]:
@@ -357,8 +372,11 @@ def _boxes_of(scene_text: str) -> str | None:
         return None
 
 
-def _lessons(chosen: _Chosen, knowledge: KnowledgeStore) -> tuple[str, ...]:
-    """Return the ids of the lessons to take back, in the order learned."""
+def _lessons(chosen: _Chosen, knowledge: KnowledgeStore, spoken: Set[str]) -> tuple[str, ...]:
+    """Return the ids of the lessons to take back, in the order learned.
+
+    ``spoken`` are lessons that the sentence taught, in other words than those of the lesson.
+    """
     from deixis.memory.semantic.rdf.graphs import GraphName
     from deixis.ontology.lessons.read import provenances
 
@@ -366,7 +384,7 @@ def _lessons(chosen: _Chosen, knowledge: KnowledgeStore) -> tuple[str, ...]:
     if chosen.all.lesson is not None:
         memory.require_lesson(chosen.all.lesson)
     known = provenances(memory.triples(GraphName.EPISODES))
-    wanted = {lesson.lesson for lesson in known if chosen.holds_of_lesson(lesson)}
+    wanted = {lesson.lesson for lesson in known if chosen.holds_of_lesson(lesson, whole=lesson.lesson not in spoken)}
     return tuple(lesson for lesson in memory.lessons() if lesson in wanted)
 
 

@@ -14,15 +14,21 @@ from deixis.errors import DeixisError, UnknownTermError
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.ontology.graph.facts import Fact
-from deixis.ontology.relations.relation import Relation, nearest
+from deixis.ontology.relations.relation import Relation
 from deixis.reasoning.constraints.proof import Proof, Rule
-from deixis.reasoning.entailment.claim_facts import ClaimFact, facts_of_claims, with_facts_of_claims
+from deixis.reasoning.entailment.claim_facts import (
+    ClaimFact,
+    facts_of_claims,
+    implications_with_claims,
+    with_facts_of_claims,
+)
 from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.demands import demands_of
 from deixis.reasoning.entailment.derivations import Derivation
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.reasoning.errors import OutOfTimeError, require_time_limit
+from deixis.spelling import nearest
 from deixis.workflows.layouts.read import as_script
 
 MAX_STEPS_LISTED = 12
@@ -203,34 +209,11 @@ def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
         The facts that follow, or the minimal conflict.
     """
     deadline = Deadline.after(time_limit)
-    of_claims, implied = _implied(script, time_limit)
+    of_claims, implied = implications_with_claims(script.graph(), script.claims, time_limit)
     implications = implied[-1]
     possible = implications.consistent
     conflict = None if possible else find_conflict(implications, deadline.for_reasons(time_limit))
     return Inference(script.facts, implications, conflict, implications.decided, deadline, of_claims, implied[:-1])
-
-
-def _implied(script: Script, time_limit: float) -> tuple[tuple[ClaimFact, ...], tuple[Implications, ...]]:
-    """Return the facts that the claims of a script imply, and what follows; several where *between* adds facts."""
-    graph = script.graph()
-    stated = {str(fact) for fact in script.facts if not fact.optional and fact.weight >= 1}
-    found = facts_of_claims(script.claims, graph.nodes, graph.vocabulary)
-    found = tuple(entry for entry in found if str(entry.fact) not in stated)
-    implied = [Implications(with_facts_of_claims(graph, found) if found else graph, time_limit)]
-    while implied[-1].consistent and any(claim.relation == "between" for claim in script.claims):
-        more = facts_of_claims(script.claims, graph.nodes, graph.vocabulary, implied[-1].holds)
-        known = stated | {str(entry.fact) for entry in found}
-        more = tuple(
-            entry
-            for entry in more
-            if str(entry.fact) not in known
-            and not implied[-1].holds(entry.fact.relations[0], entry.fact.subject, entry.fact.object)
-        )
-        if not more:
-            break
-        found += more
-        implied.append(Implications(with_facts_of_claims(graph, found), time_limit))
-    return found, tuple(implied)
 
 
 def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> bool | None:

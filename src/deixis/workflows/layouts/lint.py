@@ -19,6 +19,7 @@ from deixis.grammar.script import Mention, RelationStatement, Script, mentions
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.export import ON_SURFACE
 from deixis.ontology.graph.facts import Fact, Source
+from deixis.ontology.inflection import is_plural, singular
 from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.errors import require_time_limit
 from deixis.workflows.layouts.read import as_script
@@ -30,6 +31,9 @@ CODES = {
     "N001": "A name is one letter away from another name, or from the word of a kind.",
     "N002": "No fact mentions a declared name.",
     "N003": "The kind of a name is unknown.",
+    "N004": "A counted name is a plural, so the names of its members are plurals.",
+    "N005": "A name stands beside numbered names of the same noun.",
+    "N006": "A name consists of the names of two other objects.",
     "F001": "A fact is stated twice.",
     "F002": "A fact follows from the other facts.",
     "F003": "Facts contradict each other.",
@@ -134,8 +138,7 @@ def lint(
     read = as_script(script, deadline=deadline)
     from_facts, complete = _inferred_findings(read, deadline)
     found = [*_name_findings(read), *_fact_findings(read), *from_facts]
-    if read.reading is not None:
-        found += _english_findings(read, read.reading)
+    found += _number_findings(read) if read.reading is None else _english_findings(read, read.reading)
     shown = [f for f in found if _chosen(f.code, select, ignore) and not _suppressed(read, f)]
     return Lint(read.file, tuple(sorted(shown, key=lambda f: (f.source, f.code))), complete)
 
@@ -225,6 +228,32 @@ def _name_findings(script: Script) -> Iterator[Finding]:
             yield Finding("N002", mention.source, f"'{name}' is declared, but no fact mentions it")
         elif name not in related:
             yield Finding("N002", mention.source, f"nothing says where '{name}' is")
+
+
+def _number_findings(script: Script) -> Iterator[Finding]:
+    """Yield the warnings about numbered and joined names of a layout script: each name once, at its first mention."""
+    first: dict[str, Mention] = {}
+    for statement in script.all_statements():
+        for mention in mentions(statement):
+            one = singular(mention.name.replace("_", " ")).replace(" ", "_")
+            is_counted = mention.count is not None and is_plural(mention.name)
+            if is_counted and one != mention.name and mention.name not in first:
+                message = f"'{mention.name}' is a plural, so the members are {_shown(mention.names)}"
+                yield Finding("N004", mention.source, message, f"write the singular: {mention.count} {one}")
+            for name in (mention.name, *mention.names):
+                first.setdefault(name, mention)
+    objects = set(script.objects)
+    for name in script.objects:
+        numbered = [other for other in script.objects if other != name and plain_name(other) == name]
+        if numbered:
+            message = f"'{name}' is another object than {_shown(numbered)}"
+            yield Finding("N005", first[name].source, message, "give it a number too, or use one of their names")
+        words = name.split("_")
+        ends = (("_".join(words[:at]), "_".join(words[at:])) for at in range(1, len(words)))
+        joined = next((pair for pair in ends if objects.issuperset(pair) and plain_name(pair[1]) != pair[1]), None)
+        if joined is not None:
+            message = f"'{name}' consists of the names '{joined[0]}' and '{joined[1]}'"
+            yield Finding("N006", first[name].source, message, f"for two objects, write {', '.join(joined)}")
 
 
 def _misspelt(names: list[str], known: set[str], declared: set[str], uses: Counter[str]) -> dict[str, str]:

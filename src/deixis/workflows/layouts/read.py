@@ -15,6 +15,7 @@ from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.read import is_english, read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
+from deixis.spelling import nearest
 from deixis.text_files import require_path_or_text
 
 if TYPE_CHECKING:
@@ -215,9 +216,11 @@ def is_script_file(layout: str | Path) -> bool:
     Returns
     -------
     bool
-        True for a file.
+        True for a file, also for one with a misspelt ending.
     """
-    return isinstance(layout, Path) or layout.endswith(SCRIPT_ENDING) or os.sep in layout or is_english(layout)
+    if isinstance(layout, Path) or os.sep in layout or is_english(layout):
+        return True
+    return nearest(Path(layout).suffix, [SCRIPT_ENDING]) is not None
 
 
 def example_pairs(inputs: Sequence[Path]) -> list[tuple[Path, Path]]:

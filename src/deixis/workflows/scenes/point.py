@@ -192,7 +192,8 @@ def spoken_name(text: str) -> SpokenName | None:
     Returns
     -------
     SpokenName or None
-        The name in the singular; None for a question, a command, or a sentence about anything else.
+        The name in the singular; None for a question, a command, or a sentence about anything else. A bare noun is a
+        name only if nothing else is said: *layout tea; teacup on saucer* is a script.
 
     Examples
     --------
@@ -208,7 +209,8 @@ def spoken_name(text: str) -> SpokenName | None:
     plain, corrects = without_correction(plain)
     if not plain.strip():
         return None
-    for sentence in parse_english(plain):
+    sentences = parse_english(plain)
+    for sentence in sentences:
         for clause in sentence.clauses:
             for predicate in clause.predicates:
                 demonstrated = clause.subject is not None and not clause.subject.head
@@ -216,7 +218,7 @@ def spoken_name(text: str) -> SpokenName | None:
                     noun = predicate.arguments[0].head
                     if noun:
                         return SpokenName(noun, predicate.positive and clause.positive, corrects)
-        phrase = sentence.fragment
+        phrase = sentence.fragment if len(sentences) == 1 and not sentence.clauses else None
         if phrase is not None and phrase.head and not phrase.predicates and sentence.words == sentence.words_understood:
             return SpokenName(phrase.head, not phrase.negated, corrects)
     return None

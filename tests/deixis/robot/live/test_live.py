@@ -57,6 +57,10 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
         robot.says("which one did the teacher show you first")
         robot.says("Eve moved the plate.")
         robot.says("who moved the plate?")
+        robot.says("layout cups; cup inside mug; mug inside cup")
+        robot.says("t99 is left of the plate.")
+        robot.says("What was wrong in the last hour?")
+        robot.says("Was the fork ever missing?")
         robot.says("t3 is a bowl.")
         robot.says("t3 is a cup.")
         robot.says("t99 is a bowl.")
@@ -99,6 +103,16 @@ def test_what_a_person_taught_is_forgotten_on_request(ran: Ran) -> None:
     with Session(ran.memory) as session:
         assert "This is a fork" in session.recall("what did the teacher say?").answer
         assert not session.recall("what did user say?").known
+
+
+def test_descriptions_that_cannot_be_teach_nothing(ran: Ran) -> None:
+    assert heard(ran, "robot: I learned nothing: 'cup' cannot be both inside and containing 'mug'.")
+    assert heard(ran, "robot: I learned nothing: no thing 't99' is in view")
+
+
+def test_past_mistakes_are_recalled(ran: Ran) -> None:
+    assert heard(ran, "robot: The plate is missing, ", "(inferred")
+    assert heard(ran, "robot: Yes: the fork went at ")
 
 
 def test_greetings_and_thanks_get_a_reply(ran: Ran) -> None:

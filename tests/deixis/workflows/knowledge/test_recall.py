@@ -139,6 +139,83 @@ def test_questions_are_answered_with_times_and_sources(board: Blackboard, questi
     assert (found.reason is None) == found.known
 
 
+@pytest.fixture(scope="module")
+def tea() -> Iterator[Blackboard]:
+    """An hour of boxes: a cup is on a saucer and goes, a spoon is moved, and the table is a layout with a mistake."""
+    places = [
+        ("plate", (0.17, -0.13, 0, 0.42, 0.12, 0.02), 0, None),
+        ("saucer", (0.5, 0.2, 0, 0.64, 0.34, 0.02), 0, None),
+        ("cup", (0.53, 0.23, 0.02, 0.61, 0.31, 0.11), 300, 2400),
+        ("spoon", (-0.1, 0.2, 0, -0.07, 0.36, 0.01), 1200, 2100),
+        ("spoon", (0.66, 0.2, 0, 0.69, 0.36, 0.01), 2100, None),
+    ]
+    things = {name: f"t{number}" for number, name in enumerate(("plate", "saucer", "cup", "spoon"), 1)}
+    said = [((things[name], "at", str(list(box))), start, finish) for name, box, start, finish in places]
+    said += [((thing, "isA", name), 300, None) for name, thing in things.items()]
+    said += [(("table", "layout", "tea"), 900, None), (("table", "fault", "the cup is missing"), 2400, 3000)]
+    said += [(("ball", "colour", "red"), 0, None), (("ball", "isA", "ball"), 0, None)]
+    with Blackboard.transient(origin=NOW - timedelta(hours=1)) as board:
+        for number, (statement, start, finish) in enumerate(said):
+            board.add(episodic(f"f{number}", statement, start=start, finish=finish, source=SEEN), by="test")
+        yield board
+
+
+CUP_ON_SAUCER = "the cup was on the saucer from 11:35:00 to 12:10:00 (seen)."
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        ("what is t4?", "t4 has been a spoon since 11:35:00 (seen)."),
+        ("is t2 a saucer?", "Yes: t2 has been a saucer since 11:35:00 (seen)."),
+        ("is t2 a spoon?", "No: t2 has been a saucer since 11:35:00 (seen)."),
+        ("which one is the cup?", "t3 has been a cup since 11:35:00 (seen)."),
+        ("what layout is this?", "The layout has been 'tea' since 11:45:00 (seen)."),
+        ("what layout was there at 11:40?", "Not known: no layout of the table is recorded for that time."),
+        ("what was wrong at 12:15?", "The cup is missing, from 12:10:00 to 12:20:00 (seen)."),
+        ("is everything in its place?", "Not known: nothing is recorded as wrong."),
+        ("what colour is the ball?", "The ball has been red since 11:30:00 (seen)."),
+        ("what colour is the cup?", "Not known: no colour of it is recorded."),
+        ("what was on the saucer?", CUP_ON_SAUCER.capitalize()),
+        ("was the cup on the saucer?", f"Yes: {CUP_ON_SAUCER}"),
+        ("is the cup on the saucer?", f"No: {CUP_ON_SAUCER}"),
+        ("was there ever a cup on the saucer?", f"Yes: {CUP_ON_SAUCER}"),
+        ("was the cup there at 12:20?", f"No: {CUP_ON_SAUCER}"),
+        ("did the cup come back?", f"No: {CUP_ON_SAUCER}"),
+        (
+            "did the spoon come before the cup?",
+            "No: the spoon was top left of the plate from 11:50:00 to 12:05:00 (seen).",
+        ),
+        ("which came first, the spoon or the cup?", "The cup came at 11:35:00 (seen)."),
+        ("how long ago was the cup taken away?", "The cup went at 12:10:00, 20 minutes ago (seen)."),
+        ("where was the spoon before?", "The spoon was top left of the plate from 11:50:00 to 12:05:00 (seen)."),
+        ("how many plates are there?", "2: the plate, the saucer."),
+        ("what was moved before noon?", "Not known: nothing is recorded as moved for that time."),
+        ("who took it?", "Not known: the question does not say what 'it' is."),
+        ("will the cup come back?", "Not known: what will happen is not recorded."),
+    ],
+)
+def test_names_faults_and_the_past_are_recalled(tea: Blackboard, question: str, answer: str) -> None:
+    assert ask(tea, question).answer == answer
+
+
+def test_lasting_things_are_those_without_changes(tea: Blackboard) -> None:
+    for question, things in (
+        ("which things were never moved?", {"t1", "t2"}),
+        ("which things were not moved since 12:06?", {"t1", "t2", "t4"}),
+        ("what has been here the whole time?", {"t1", "t2"}),
+        ("where is the plate?", {"t1"}),  # not the saucer, which is a kind of plate
+    ):
+        assert {fact.fluent.statement.subject for fact in ask(tea, question).facts} == things, question
+
+
+def test_a_person_is_there_now_if_just_seen_or_heard(board: Blackboard) -> None:
+    assert ask(board, "is Ada still here?").answer == (
+        "Not known: this person was not seen or heard just now; Ada was heard at 11:39:50."
+    )
+    assert recall("is Ada here?", board, at=620.0).answer.startswith("Yes: Ada was")
+
+
 def test_a_speaker_can_be_named(board: Blackboard) -> None:
     assert recall("what did I show you first?", board, at=3600.0, speaker="bob").answer.startswith("Bob showed the cup")
     assert recall("what was shown first?", board, at=3600.0, speaker="bob").answer.startswith("Ada showed the dinner")

@@ -100,7 +100,7 @@ BEN_TOOK = "Ben took the cup away at 11:30:00 (seen, certainty 0.95)"
         ("What has happened since 11:25?",
          "The knife was right of the plate from 11:00:00 to 11:40:00 (seen); the cup was near the knife from 11:00:00 "
          f"to 11:30:00 (seen); {BEN_TOOK}; who took the knife away at 11:40:00 was not seen."),
-        ("What did Ben do with the cup?", f"Yes: {BEN_TOOK}."),
+        ("What did Ben do with the cup?", f"{BEN_TOOK}."),
         ("What things has Ada touched?",
          f"Ada put the spoon down at 11:05:00 (said by Ben); {ADA_MOVED}; {UNSEEN_MOVE}; who took the knife away at "
          "11:40:00 was not seen."),

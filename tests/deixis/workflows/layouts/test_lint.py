@@ -47,6 +47,11 @@ def codes(text: str, *ignored: str) -> list[str]:
         ("always fork left of plate", ["H001"]),
         ("fork is rarely not left of plate", ["H002"]),
         ("2 cup left of plate; cup_1 above cup_2", []),
+        ("2 cups left of plate; cups_1 above cups_2", ["N004"]),
+        ("cup_1, cup_2 left of plate; cup right of plate", ["N005"]),
+        ("cup_1, cup_2 left of plate; cup_1 cup_2 right of fork; fork right of plate", ["N006"]),
+        ("plate left of cup; cup_plate right of cup", []),
+        ("2 scissors left of plate", []),
         ("cup left of plate_a; cup right of plate_b", []),
     ],
 )

@@ -83,6 +83,7 @@ def test_a_kind_of_the_earlier_name_does_not_contradict() -> None:
         ("the red one is a cup", SpokenName("cup")),
         ("the fork is left of the plate", None),
         ("no", None),
+        ("layout tea; teacup on saucer", None),
     ],
 )
 def test_names_are_read_from_sentences(text: str, name: SpokenName | None) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import permutations
 
 import pytest
@@ -11,9 +12,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from timing import processor_time_below
 
+from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.answers.symmetry import _Automorphisms, _edges, _stable, interchangeable
+from deixis.reasoning.grounding.answers.symmetry import (
+    _Automorphisms,
+    _facts,
+    _neighbours,
+    _stable,
+    interchangeable,
+)
 
 MakeGraph = Callable[..., RelationGraph]
 R = default_ontology().relations
@@ -38,8 +46,29 @@ def graphs(draw: st.DrawFn) -> tuple[RelationGraph, list[int]]:
     return RelationGraph.from_facts(R, nodes, facts), colours
 
 
-def orbits(graph: RelationGraph, colours: list[int]) -> list[tuple[str, ...]]:
-    """Find the groups from all renamings that preserve every fact and colour."""
+@st.composite
+def claims(draw: st.DrawFn, nodes: Sequence[str]) -> Claim:
+    relation = draw(st.sampled_from(["row", "row in order", "between", "closer", "tallest"]))
+    some = tuple(draw(st.permutations(nodes))[:3])
+    if relation == "tallest":
+        return Claim("tallest", some[:1])
+    if relation.startswith("row"):
+        return Claim("row", some, value="left to right" if "order" in relation else None)
+    return Claim(relation, some[:1], some[1:])
+
+
+def meaning(claim: Claim, image: Mapping[str, str]) -> tuple[object, ...]:
+    """Return what a claim states about renamed objects."""
+    subjects, arguments = ([image[name] for name in names] for names in (claim.subjects, claim.arguments))
+    if claim.relation == "row" and claim.value is None:
+        subjects.sort()
+    if claim.relation == "between":
+        arguments.sort()
+    return (claim.relation, claim.value, *subjects, None, *arguments)
+
+
+def orbits(graph: RelationGraph, colours: list[int], said: Sequence[Claim] = ()) -> list[tuple[str, ...]]:
+    """Find the groups from all renamings that preserve every fact, claim and colour."""
     n = len(graph.nodes)
     edges = [
         (int(s), int(o), int(r), bool(p), bool(q), float(w))
@@ -57,6 +86,11 @@ def orbits(graph: RelationGraph, colours: list[int]) -> list[tuple[str, ...]]:
     for image in permutations(range(n)):
         if any(colours[i] != colours[image[i]] for i in range(n)):
             continue
+        renamed = {graph.nodes[i]: graph.nodes[image[i]] for i in range(n)}
+        if Counter(meaning(one, renamed) for one in said) != Counter(
+            meaning(one, {name: name for name in renamed}) for one in said
+        ):
+            continue
         if Counter((image[s], image[o], *rest) for s, o, *rest in edges) == Counter(
             (s, o, *rest) for s, o, *rest in edges
         ):
@@ -70,6 +104,21 @@ def orbits(graph: RelationGraph, colours: list[int]) -> list[tuple[str, ...]]:
 @given(graphs())
 def test_the_groups_are_the_orbits_of_all_renamings(problem: tuple[RelationGraph, list[int]]) -> None:
     assert interchangeable(*problem) == orbits(*problem)
+
+
+@settings(max_examples=120, deadline=None)
+@given(st.data())
+def test_the_groups_are_the_orbits_with_claims(data: st.DataObject) -> None:
+    graph, colours = data.draw(graphs())
+    said = data.draw(st.lists(claims(graph.nodes), max_size=4))
+    assert interchangeable(graph, colours, said) == orbits(graph, colours, said)
+
+
+def test_a_row_in_order_separates_its_members(graph_of: MakeGraph) -> None:
+    frames = graph_of("left(tool, a)", "left(tool, b)", "left(tool, c)")
+    row = Claim("row", ("a", "b", "c"))
+    assert interchangeable(frames, [0] * 4, [row]) == [("a", "b", "c")]
+    assert interchangeable(frames, [0] * 4, [replace(row, value="left to right")]) == []
 
 
 def test_a_ring_is_one_group_though_no_swap_of_two_proves_it(graph_of: MakeGraph) -> None:
@@ -135,7 +184,8 @@ def test_many_parts_that_are_alike_are_described_quickly() -> None:
 @given(graphs())
 def test_the_first_colouring_is_that_of_plain_colour_refinement(case: tuple[RelationGraph, list[int]]) -> None:
     graph, colours = case
-    plain = _Automorphisms(_edges(graph)).refine(dict(enumerate(colours)))
-    hashed = _stable(graph, colours).tolist()
+    edges = list(_facts(graph))
+    plain = _Automorphisms(_neighbours(edges, len(graph.nodes))).refine(dict(enumerate(colours)))
+    hashed = _stable(edges, colours).tolist()
     n = range(len(graph.nodes))
     assert [[plain[i] == plain[j] for j in n] for i in n] == [[hashed[i] == hashed[j] for j in n] for i in n]
