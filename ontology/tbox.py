@@ -221,8 +221,8 @@ def tbox_turtle() -> str:
 def default_ontology() -> Ontology:
     """Return the shipped ontology, read once and then kept on disk."""
     here = Path(__file__).parent
-    code = ("tbox.py", "rdf/triple_index.py", "rdf/vocabulary.py", "relations/relation.py", "relations/allen.py")
-    code += ("things/kinds.py", "things/sizes.py", "things/colours.py")
+    code = ["tbox.py", "rdf/triple_index.py", "rdf/vocabulary.py", "relations/relation.py", "relations/allen.py"]
+    code += ["things/kinds.py", "things/sizes.py", "things/colours.py"]
 
     def parts() -> tuple[Relations, Kinds, dict[str, float], Sizes, Colours]:
         read = load_ontology()

@@ -183,10 +183,12 @@ def missing_lines(view: View) -> tuple[str, ...]:
     """
     if view.organised is None or not len(view.places):
         return ()
-    notes, image = [], np.zeros(view.organised, np.bool_)
+    image = np.zeros(view.organised, np.bool_)
     image.reshape(-1)[view.places] = True
-    for name, seen in (("rows", image.any(axis=1)), ("columns", image.any(axis=0))):
-        seen = np.trim_zeros(seen)
+    notes = []
+    for name, axis in (("rows", 1), ("columns", 0)):
+        seen = np.asarray(image.any(axis=axis))
+        seen = seen[seen.argmax() : len(seen) - seen[::-1].argmax()]
         if (~seen).sum() > 0.1 * len(seen):
             notes.append(f"{(~seen).sum()} of {len(seen)} {name} of the image have no depth")
     return tuple(notes)

@@ -142,7 +142,8 @@ class NounChunker(ModifierFinder):
                 i, more = self._modifiers(i, True)
                 found += more
         end, phrase, modifiers = self._head(start, i, determiner, count, found, owner, negated)
-        measured = phrase is not None and determiner in ("a", "an") and (count or 0) > 1 and bool(phrase.head)
+        whole = determiner in ("a", "an") or (owner is not None and (count or 0) >= 10)  # 'my $300 computer'
+        measured = phrase is not None and whole and (count or 0) > 1 and bool(phrase.head)
         if phrase is not None and measured and not self._nouns.singular(norms[end - 1])[1]:
             phrase = replace(phrase, count=None, plural=False)  # 'a five piece drum set', but 'a dozen eggs'
         return end, phrase, modifiers

@@ -29,12 +29,13 @@ _OWN = re.compile(r"\b(?:his|her)\b", re.IGNORECASE)
 """Owner of a part of the body: *he has a chip on his shoulder*."""
 _FRAMES = frozenset({"facing", "from"})
 _TREATING = word_set(
-    "wash rinse soak clean wipe scrub dry boil fry heat warm reheat bake roast cook cool chill mix beat whisk stir peel"
+    "wash rinse soak wet dampen clean wipe scrub dry boil fry heat warm reheat bake roast cook cool chill mix beat"
+    " whisk stir peel"
     " chop slice shake toast melt polish sharpen scour launder sanitize sanitise sterilize marinate mash mince dice"
     " poach saute simmer steam grill blanch braise baste knead blend dissolve thaw defrost freeze preheat whip puree"
     " grate carve drain dilute cleanse moisten knit sew iron"
 )
-"""Commands after which *in* and *under* tell where something is done: *wash the cups in the sink*.
+"""Commands after which *in*, *under* and *with* tell how something is done: *wash the cups in the sink*.
 
 After their object without an article, *on* does so as well: *chop onions on the board*.
 """
@@ -806,12 +807,17 @@ class Assembly:
 
 
 def _without_place_of_act(noun: Noun) -> Noun:
-    """Return the object of *wash the cups in the sink* without the place where that is done."""
+    """Return the object of *wash the cups in the sink with soap* without where and with what that is done."""
 
     def bare(phrase: NounPhrase) -> NounPhrase:
         named = phrase.determiner is not None or phrase.owner is not None or phrase.pronoun is not None
         where = {"inside", "under", "above"} if named else {"inside", "under", "above", "on"}
-        kept = tuple(p for p in phrase.predicates if p.relation not in where)
+        means = [
+            p
+            for p in phrase.predicates
+            if p.relation == "with" and all(a.determiner in (None, "some", "more") and not a.owner for a in p.arguments)
+        ]  # 'rinse the beaker with some water'
+        kept = tuple(p for p in phrase.predicates if p.relation not in where and p not in means)
         for predicate in phrase.predicates:
             if predicate not in kept:
                 misunderstood(predicate.span, Guess.ACTION.value)

@@ -508,6 +508,15 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, "this does not say which place is meant")
             near = tuple(p for p in (*noun.phrase.predicates, *extra) if p.positive and p.arguments)
             return (Predicate("there", (), span, positive=relator.positive), *near)
+        ground = noun.phrase.of if is_place(noun.phrase) else None
+        if (
+            ground is not None
+            and ground.determiner == "the"
+            and ground.predicates
+            and _is_on_new(ground.predicates[-1])
+        ):
+            bare = replace(ground, predicates=ground.predicates[:-1])  # 'in the middle of the table on a tray'
+            noun, extra = Noun(replace(noun.phrase, of=bare), noun.extra), (ground.predicates[-1], *extra)
         found = _positioned(relator, noun.phrase, span)
         if found is not None:
             main, rest = _with_argument(found, (*noun.phrase.predicates, *extra))

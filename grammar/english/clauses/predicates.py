@@ -94,7 +94,8 @@ _PASSIVES = {
 }  # fmt: skip
 """Relation of the agent of a participle to its subject: *surrounded by cups*."""
 _TREATING = word_set(
-    "wash rinse clean wipe polish dry scrub brush sweep dust rub mop sponge bathe cut slice chop carve peel open close"
+    "wash rinse wet soak dampen moisten"
+    " clean wipe polish dry scrub brush sweep dust rub mop sponge bathe cut slice chop carve peel open close"
     " shut seal secure fix fasten tie mark paint varnish oil grease glue sand treat spray cook heat boil burn warm cool"
     " make build construct create shape use compare associate replace mix blend combine stir pair match eat drink serve"
     " test check measure adjust tighten loosen move lift deal confuse connect concern"

@@ -442,8 +442,8 @@ class Discourse(Statements):
         unreal = unreal or next((match for match in bounds if match.end() > clause.span[0]), None)
         forbidden = _FORBIDDING.match(self.text, self.references.start)
         if positive and forbidden and _EXCEPTED.search(self.text, forbidden.end(), max(0, clause.span[0])) is None:
-            lost = any(forbidden.end() <= start <= clause.span[0] for start, _ in self.references.lost)
-            unreal = unreal or (forbidden if lost else None)  # 'do not put soiled, chipped or bent knives on it'
+            is_lost = any(forbidden.end() <= start <= clause.span[0] for start, _ in self.references.lost)
+            unreal = unreal or (forbidden if is_lost else None)  # 'do not put soiled, chipped or bent knives on it'
         if (unreal and positive) or SELDOM.search(self.text[slice(*clause.span)]):
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         if not clause.predicates and not clause.choices and not clause.existential:

@@ -40,7 +40,7 @@ transitive: hold holds held held holding, contain, support, touch, cover, have h
 transitive: show shows shown shown showing, carry carries carried carried carrying, surround, block, flank, feature
 transitive: overlook, border, abut, adjoin, wear wears wore worn wearing, bear bears bore borne bearing, display, divide
 transitive: separate, own, resemble, match matches matched matched matching, use, meet meets met met meeting
-transitive: overlap, hug, intersect, enclose
+transitive: overlap, hug, intersect, enclose, house
 transitive: serve, form, make makes made made making, occupy occupies occupied occupied occupying
 other: read reads read read reading, need, allow, mean, move, change, water
 other: start, help, look, walk, enter, approach, turn
@@ -186,6 +186,7 @@ TRANSITIVE_RELATIONS = {
     "span": ("across", False),
     "cradle": ("inside", True),
     "accommodate": ("inside", True),
+    "house": ("inside", True),
     "sport": ("with", False),
     "boast": ("with", False),
     "crown": ("on", False),

@@ -141,3 +141,33 @@ def test_wrapped_lines_are_one_sentence() -> None:
     reading = read_english(text).reading
     assert reading is not None
     assert len(reading.sentences) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Rinse the beaker with some solvent. The beaker stands on the tray.", ["on(beaker)"]),
+        ("Wet the filter paper with water and put it in the funnel.", ["inside(filter_paper, funnel)"]),
+    ],
+)
+def test_means_of_washing_are_not_contents(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+def test_prices_count_nothing() -> None:
+    assert asserted("My $300 computer is on the desk.") == ["on(computer)"]
+
+
+def test_cabinet_houses_things() -> None:
+    assert asserted("The bench houses my sander.") == ["inside(sander, bench)"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Put the drums in the center of the stage on a riser.", ["middle(drums, stage)", "on(drums, riser)"]),
+        ("Put the lamp in the corner of the desk on a book.", ["corner(lamp)", "on(lamp, book)"]),
+    ],
+)
+def test_new_support_after_a_region_is_that_of_the_thing(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected

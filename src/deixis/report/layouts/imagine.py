@@ -51,6 +51,9 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
         yield f"{sized.name:<24} {size:<16} {place:<16} {kind}"
     total = len(table.holds) + len(table.waived) + len(table.not_shown)
     yield _held_line(len(table.holds), total)
+    if table.claims:
+        satisfied = sum(entry.verdict is ClaimVerdict.SATISFIED for entry in table.claims)
+        yield _held_line(satisfied, len(table.claims), "claim")
     for waived in table.waived:
         what = "optional" if waived.fact.optional else f"weight {waived.fact.weight:g}"
         yield f"Given up: {waived.fact}{_source(waived.fact)} [{what}]" + (
@@ -73,13 +76,13 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
         yield "Note: time limit reached before everything was in its best place; all firm facts hold."
 
 
-def _held_line(held: int, total: int) -> str:
-    """Return how many of the stated facts hold."""
+def _held_line(held: int, total: int, noun: str = "fact") -> str:
+    """Return how many of the stated facts or claims hold."""
     if total == 0:
-        return "The script states no facts."
+        return f"The script states no {noun}s."
     if total == 1:
-        return "The only fact holds." if held else "The only fact does not hold."
-    words = share(held, total, "fact")
+        return f"The only {noun} holds." if held else f"The only {noun} does not hold."
+    words = share(held, total, noun)
     return f"{words[0].upper()}{words[1:]} {'holds' if held == 1 or words.startswith('neither') else 'hold'}."
 
 

@@ -119,7 +119,7 @@ def tell_layout(script: Script, all_facts: bool, deadline: Deadline) -> Telling:
     stated = _stated(script)
     left_out, complete = ([], True) if all_facts else _implied(script, stated, deadline)
     facts = _without_numbers([fact for number, fact in enumerate(stated) if number not in set(left_out)])
-    surface = (script.reading.surface if script.reading is not None else None) or "table"
+    surface = script.surface or "table"
     names = list(dict.fromkeys(name for fact in facts for name in objects_of(fact.content)))
     plan = Plan(facts, designations(names), surface.replace("_", " "), script.ontology)
     sentences = plan.readable(deadline)

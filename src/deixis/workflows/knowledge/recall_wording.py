@@ -150,7 +150,7 @@ def fact_words(found: Recall, fact: Recalled) -> str:
         sentence = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
         if not fluent.is_open:
             return f"{sentence}; expected until {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-        return f"{sentence}; {definite(fact.name)} has not been seen yet, probability {fluent.certainty:.2g}"
+        return f"{sentence}; {definite(fact.name)} has not been seen yet, probability {_certainty(fluent.certainty)}"
     elif statement.predicate in (CONTRADICTED, SAME_AS):
         then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
         if statement.predicate == CONTRADICTED:
@@ -249,10 +249,15 @@ def _phrase(relation: str) -> str:
 
 
 def _source(fact: Recalled) -> str:
-    sure = "" if fact.fluent.certainty == 1 else f", certainty {fact.fluent.certainty:.2g}"
+    sure = "" if fact.fluent.certainty == 1 else f", certainty {_certainty(fact.fluent.certainty)}"
     source = fact.fluent.source
     by = f" by {source.by}" if source.origin in (Origin.SAID, Origin.SHOWN) else ""
     return f" ({source.origin.value}{by}{sure})"
+
+
+def _certainty(certainty: float) -> str:
+    """Return a certainty with two digits; 1 only where it is certain."""
+    return f"{certainty if certainty == 1 else min(certainty, 0.99):.2g}"
 
 
 def _time_phrase(found: Recall, lower: float, upper: float) -> str:

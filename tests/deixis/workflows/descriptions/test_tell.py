@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import deixis
+from deixis.grammar.english.reader import read_english
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import OutOfTimeError
@@ -76,6 +77,15 @@ def test_sentences_join_subjects_and_predicates() -> None:
     assert deixis.tell(script).text == (
         "The fork and the spoon are left of the plate and nearer to you than the jug. The fork is not on the mat."
     )
+
+
+def test_places_are_on_the_surface_that_the_layout_names() -> None:
+    text = "layout work on bench; lamp at the far left corner; mug left of jug"
+    told = deixis.tell(deixis.read_script(text=text)).text
+    assert "in the far left corner of the bench" in told
+    read = read_english(told)
+    assert read.surface == "bench"
+    assert "corner(lamp, 'far left')" in map(str, read.claims)
 
 
 def test_numbered_objects_are_counted() -> None:

@@ -209,6 +209,12 @@ def test_lasting_things_are_those_without_changes(tea: Blackboard) -> None:
         assert {fact.fluent.statement.subject for fact in ask(tea, question).facts} == things, question
 
 
+def test_a_certainty_below_one_is_not_worded_as_one() -> None:
+    with Blackboard.transient(origin=NOW - timedelta(hours=1)) as board:
+        board.add(episodic("f1", ("t1", "isA", "cup"), start=0.0, certainty=0.9996, source=SEEN), by="test")
+        assert ask(board, "what is t1?").answer == "t1 has been a cup since 11:30:00 (seen, certainty 0.99)."
+
+
 def test_a_person_is_there_now_if_just_seen_or_heard(board: Blackboard) -> None:
     assert ask(board, "is Ada still here?").answer == (
         "Not known: this person was not seen or heard just now; Ada was heard at 11:39:50."
