@@ -201,7 +201,7 @@ def _sentence(
     if cost and not best.heading and len(words) <= MAX_WORDS_OF_ALTERNATIVES:
         for second in tagger.second_best(tagging):
             other, other_chunks = _parsed(text, raw, words, nouns, lead, asks, second)
-            clause = note and other.fragment is None
+            clause = note and other.fragment is None and any(said.predicates for said in other.clauses)
             acts = clause and all(_is_only_verb(words[at].norm, nouns) for at in second.tried)
             if _cost(other) + MIN_GAIN <= cost or (clause and _cost(other) < cost + acts * (1 + MIN_GAIN)):
                 best, chunks, cost = other, other_chunks, _cost(other)
