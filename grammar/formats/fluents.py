@@ -238,7 +238,11 @@ def _known(data: Any, where: str, names: Collection[str], kind: str) -> str:
 
 def _suggestion(name: str, names: Collection[str]) -> str:
     near = nearest(name, names)
-    return f"did you mean '{shortened(near)}'?; " if near else ""
+    if near is not None:
+        return f"did you mean '{shortened(near)}'?; "
+    stem = name.rpartition(".")[0]
+    points = [other for other in names if stem and other.rpartition(".")[0] == stem]
+    return f"there are {' and '.join(map(shortened, points))}; " if points else ""
 
 
 def format_fluents(content: FluentFile) -> str:

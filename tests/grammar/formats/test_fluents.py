@@ -149,7 +149,11 @@ WRONG = [
     (with_relation(ALLEN | {"allen": []}), "relations[0].allen must have at least one relation"),
     (with_relation(ALLEN | {"b": "fetch"}), "relations[0]: the fluent 'fetch' is related to itself"),
     (with_relation(BETWEEN | {"from": "fetch"}), "relations[0].from: there is no point 'fetch'"),
-    (with_relation(BETWEEN | {"to": "serve.end"}), "there is no point 'serve.end'; did you mean 'serve.finish'?"),
+    (with_relation(BETWEEN | {"to": "serve.finsh"}), "there is no point 'serve.finsh'; did you mean 'serve.finish'?"),
+    (
+        with_relation(BETWEEN | {"to": "serve.end"}),
+        "there is no point 'serve.end'; there are serve.start and serve.finish",
+    ),
     (with_relation(BETWEEN | {"to": "fetch.start"}), "relations[0]: the time from 'fetch.start' to itself"),
     (with_relation({"from": "fetch.start", "to": "serve.start"}), "relations[0]: 'bounds' is missing"),
 ]
