@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-_BLOCK = 4096
-"""Number of points that are multiplied at once, too few for BLAS to start threads."""
+_BLOCK, _PRODUCTS = 4096, 1 << 17
+"""Maximum number of points, and of products, that are multiplied at once, too few for BLAS to start threads."""
 
 
 def coordinates(points: NDArray[np.floating], axes: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -15,9 +15,9 @@ def coordinates(points: NDArray[np.floating], axes: NDArray[np.float64]) -> NDAr
     Parameters
     ----------
     points
-        Points of shape (n, 3), in metres.
+        Points of shape (n, d), in metres.
     axes
-        Vector of shape (3,), or several of shape (k, 3).
+        Vector of shape (d,), or several of shape (k, d).
 
     Returns
     -------
@@ -35,8 +35,9 @@ def coordinates(points: NDArray[np.floating], axes: NDArray[np.float64]) -> NDAr
     [[2.0, 3.0]]
     """
     result = np.empty((len(points), *axes.shape[:-1]))
-    for start in range(0, len(points), _BLOCK):
-        np.matmul(points[start : start + _BLOCK], axes.T, out=result[start : start + _BLOCK])
+    block = max(min(_BLOCK, _PRODUCTS // max(axes.size, 1)), 1)
+    for start in range(0, len(points), block):
+        np.matmul(points[start : start + block], axes.T, out=result[start : start + block])
     return result
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from deixis.perception.detection.quantiles import medians
 from deixis.perception.detection.segmentation.surface import Surface
 from deixis.perception.detection.settings import DetectionSettings, LyingSettings
+from deixis.reasoning.geometry.coordinates import coordinates
 
 
 def with_lying_things(surface: Surface, of: NDArray[np.int32], settings: DetectionSettings) -> NDArray[np.int32]:
@@ -125,14 +126,16 @@ def _is_raised(surface: Surface, piece: NDArray[np.intp], below: NDArray[np.intp
         sides = ConvexHull(around[:, :2]).equations
     except QhullError:
         return False
-    within = (places[:, :2] @ sides[:, :2].T + sides[:, 2]).max(axis=1) < 0.0
+    within = (coordinates(places[:, :2], sides[:, :2]) + sides[:, 2]).max(axis=1) < 0.0
     if within.mean() < limits.min_inside_share:
         return False
-    origin = places.mean(axis=0)
-    terms = _quadratic(around[:, :2] - origin[:2])
-    shape = np.linalg.lstsq(terms, around[:, 2], rcond=None)[0]
+    origin, scale = places.mean(axis=0), np.ptp(around[:, :2])
+    terms = _quadratic((around[:, :2] - origin[:2]) / scale)
+    # the normal equations are well conditioned at this scale; least squares of thousands of rows start threads of BLAS
+    known = np.einsum("ij,ik->jk", terms, terms), np.einsum("ij,i->j", terms, around[:, 2])
+    shape = np.linalg.lstsq(*known, rcond=None)[0]
     rough = float((around[:, 2] - terms @ shape).std())
-    rise = places[:, 2] - _quadratic(places[:, :2] - origin[:2]) @ shape
+    rise = places[:, 2] - _quadratic((places[:, :2] - origin[:2]) / scale) @ shape
     least = max(limits.min_rise, limits.rise_noise_ratio * rough / np.sqrt(len(piece) / limits.correlated_points))
     return bool(least < rise.mean() < limits.max_rise)
 

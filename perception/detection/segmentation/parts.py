@@ -19,6 +19,7 @@ from deixis.perception.detection.outline import SECTORS, circle_around, corners_
 from deixis.perception.detection.segmentation.boundaries import Boundaries
 from deixis.perception.detection.segmentation.supervoxels import Supervoxels, sums
 from deixis.perception.detection.settings import JoiningSettings
+from deixis.reasoning.geometry.coordinates import coordinates
 
 Measure = Callable[["Parts", int, int], float]
 Known = TypeVar("Known")
@@ -533,7 +534,7 @@ def inside(parts: Parts, inner: int, outer: int) -> float:
     if hull is None:
         return 0.0
     plan = parts.places(inner)[:, :2]
-    return float(((plan @ hull[:, :2].T + hull[:, 2]).max(axis=1) <= parts.settings.inside_tolerance).mean())
+    return float(((coordinates(plan, hull[:, :2]) + hull[:, 2]).max(axis=1) <= parts.settings.inside_tolerance).mean())
 
 
 def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
@@ -544,7 +545,7 @@ def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
     hull = parts.hull(cover)
     if hull is None:
         return True
-    outside = (places[:, :2] @ hull[:, :2].T + hull[:, 2]).max(axis=1)
+    outside = (coordinates(places[:, :2], hull[:, :2]) + hull[:, 2]).max(axis=1)
     return bool((outside < parts.measures.tops[cover] - places[:, 2]).mean() > parts.settings.min_covered_share)
 
 
