@@ -13,9 +13,22 @@ from deixis.ontology.graph.facts import Source
 PLACES = frozenset({"corner", "edge", "end", "side", "part", "middle"})
 """Claims about a place in a region: of the surface, or of the thing that is the argument."""
 
-COLLECTIVE = frozenset(
-    {"row", "circle", "nested", "stacked", "near_each_other", "parallel_each_other", "touching_each_other"}
-)
+EACH_OTHER = {"near_each_other": "near", "touching_each_other": "touching", "parallel_each_other": "parallel"}
+"""Relation of each two members of an arrangement."""
+
+ROW_ORDERS = {
+    "left to right": "left",
+    "right to left": "right",
+    "front to back": "bottom",
+    "near to far": "bottom",
+    "bottom to top": "bottom",
+    "back to front": "top",
+    "far to near": "top",
+    "top to bottom": "top",
+}
+"""Relation of each member of a row to the next one, by the order of the row."""
+
+COLLECTIVE = frozenset({"row", "circle", "nested", "stacked", *EACH_OTHER})
 """Claims about all of their subjects together."""
 
 SUPERLATIVES = (

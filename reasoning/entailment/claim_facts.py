@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
-from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.claims import EACH_OTHER, ROW_ORDERS, Claim
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Relation, Relations
@@ -28,21 +28,6 @@ COMPARATIVES = {
     "rightmost": "right",
 }
 """Relation of what has a superlative to each of the others."""
-
-MEMBERS = {"near_each_other": "near", "touching_each_other": "touching", "parallel_each_other": "parallel"}
-"""Relation of each two members of an arrangement."""
-
-ROWS = {
-    "left to right": "left",
-    "right to left": "right",
-    "front to back": "bottom",
-    "near to far": "bottom",
-    "bottom to top": "bottom",
-    "back to front": "top",
-    "far to near": "top",
-    "top to bottom": "top",
-}
-"""Relation of each member of a row to the next one, by the order of the row."""
 
 RANKS = {"1 from left": "left", "-1 from right": "left", "1 from right": "right", "-1 from left": "right"}
 """Relation of what has an extreme rank to each of the others."""
@@ -110,10 +95,10 @@ def _pairs(
     holds: Callable[[Relation, str, str], bool] | None,
 ) -> Iterator[tuple[str, str, str, Fact | None]]:
     term, subjects, others = claim.relation, claim.subjects, claim.arguments
-    if term == "row" and claim.value in ROWS:
-        yield from ((first, ROWS[claim.value], second, None) for first, second in pairwise(subjects))
-    elif term in MEMBERS:
-        yield from ((first, MEMBERS[term], second, None) for first, second in combinations(subjects, 2))
+    if term == "row" and claim.value in ROW_ORDERS:
+        yield from ((first, ROW_ORDERS[claim.value], second, None) for first, second in pairwise(subjects))
+    elif term in EACH_OTHER:
+        yield from ((first, EACH_OTHER[term], second, None) for first, second in combinations(subjects, 2))
     elif term in COMPARATIVES and claim.value is None:
         rest = others or [name for name in nodes if name not in subjects]
         yield from ((subject, COMPARATIVES[term], other, None) for subject in subjects for other in rest)

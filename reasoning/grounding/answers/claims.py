@@ -17,7 +17,7 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph.claims import PLACES, SUPERLATIVES, Claim
+from deixis.ontology.graph.claims import EACH_OTHER, PLACES, ROW_ORDERS, SUPERLATIVES, Claim
 from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.geometry.poses import MIN_STRETCH, Poses, bearings
@@ -28,10 +28,8 @@ from deixis.reasoning.grounding.evidence.claims.aims import (
     stated_direction,
 )
 from deixis.reasoning.grounding.evidence.claims.claims import (
-    EACH_OTHER,
     MAX_THINGS,
     MEASURES,
-    ROW_ORDERS,
     ClaimDegrees,
     distance_degree,
 )

@@ -16,9 +16,8 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.claims import ROW_ORDERS, Claim
 from deixis.ontology.graph.graph import RelationGraph
-from deixis.reasoning.grounding.evidence.claims.claims import ROW_ORDERS
 
 BUDGET = 3_000_000
 """Maximum number of nodes that colour refinements visit, over a whole description."""

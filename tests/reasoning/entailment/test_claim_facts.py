@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.claims import ROW_ORDERS, Claim
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.entailment.claim_facts import COMPARATIVES, ROWS, facts_of_claims
+from deixis.reasoning.entailment.claim_facts import COMPARATIVES, facts_of_claims
 from deixis.workflows.layouts.infer import infer, verdict_of
 
 RELATIONS = default_ontology().relations
@@ -75,7 +75,7 @@ def test_claims_that_contradict_facts_are_a_conflict() -> None:
 
 
 @settings(deadline=None, max_examples=60)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(sorted(COMPARATIVES)), st.sampled_from(sorted(ROWS)))
+@given(st.integers(0, 2**32 - 1), st.sampled_from(sorted(COMPARATIVES)), st.sampled_from(sorted(ROW_ORDERS)))
 def test_implied_facts_hold_where_the_claim_is_true(seed: int, term: str, order: str) -> None:
     rng = np.random.default_rng(seed)
     low = rng.uniform(0, 1, (4, 3)) + 2 * np.arange(4)[:, None]
@@ -91,7 +91,7 @@ def test_implied_facts_hold_where_the_claim_is_true(seed: int, term: str, order:
     for entry in facts_of_claims([Claim(term, (best,))], names, RELATIONS):
         assert entry.fact.subject == best
         assert measure[names.index(best)] >= measure[names.index(entry.fact.object)]
-    axis, sign = {"left": (0, 1), "right": (0, -1), "bottom": (1, 1), "top": (1, -1)}[ROWS[order]]
+    axis, sign = {"left": (0, 1), "right": (0, -1), "bottom": (1, 1), "top": (1, -1)}[ROW_ORDERS[order]]
     row = [names[i] for i in np.argsort(sign * boxes[:, 0, axis])]
     for entry in facts_of_claims([Claim("row", tuple(row), value=order)], names, RELATIONS):
         ends = [boxes[names.index(name), :, axis] for name in (entry.fact.subject, entry.fact.object)]

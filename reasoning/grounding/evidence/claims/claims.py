@@ -20,7 +20,7 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph.claims import PLACES, Claim
+from deixis.ontology.graph.claims import EACH_OTHER, PLACES, ROW_ORDERS, Claim
 from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.geometry.overlap import gaps
@@ -75,25 +75,8 @@ Centres are seldom meant: 30 cm between those of two things of 40 cm would be th
 BEFORE_ON_EACH_SIDE = 0.5
 """Degree of *on each side* for things in front of and behind a third one, instead of left and right of it."""
 
-EACH_OTHER = {
-    "near_each_other": "near",
-    "touching_each_other": "touching",
-    "parallel_each_other": "parallel",
-}
-"""Relation that holds between all members of an arrangement."""
-
 NOTHING = {"none_on": "on", "none_under": "under", "none_inside": "inside", "empty": "inside"}
 """Relation that no thing has to the subject."""
-
-ROW_ORDERS = {
-    "left to right": "left",
-    "right to left": "right",
-    "front to back": "bottom",
-    "near to far": "bottom",
-    "back to front": "top",
-    "far to near": "top",
-}
-"""Relation of each member of a row to the next one."""
 
 
 @dataclass(frozen=True, eq=False)
