@@ -48,6 +48,7 @@ from deixis.reasoning.grounding.evidence.properties.unary import OUTLIERS
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
+from deixis.spelling import nearest
 
 SURE_CONFIDENCE = 0.9
 """Minimum confidence at which a label identifies its object."""
@@ -442,6 +443,9 @@ def _extra(
             reason = f"one {label.text} too many"
         else:
             reason = f"the layout has no unfilled role for {with_article(label.text)}"
+            near = nearest(label.text, [left.name.replace("_", " ") for left in grounding.unmatched_objects])
+            if near is not None and near != label.text:
+                reason += f"; did you mean '{near}'?"
         found.append(Extra(thing, label.text if label else None, reason))
     return tuple(found)
 

@@ -415,3 +415,11 @@ def test_a_learned_group_teaches_and_checks_all_members(tmp_path: Path) -> None:
     checked = session.check(learned.lesson.layout.name, glasses((0.0, 0.25), (0.08, -0.25)))
     assert {entry.perceived for entry in checked.table.of(RoleVerdict.MISPLACED)} == {"g2"}
     session.close()
+
+
+def test_a_misspelt_label_has_the_missing_role_as_suggestion() -> None:
+    script = deixis.read_script(text="lamp right of plate; fork left of plate")
+    corners = [[0.0, 0.0], [0.1, 0.0], [0.5, 0.0]], [[0.03, 0.2], [0.33, 0.23], [0.65, 0.15]]
+    scene = Scene.from_boxes(*corners, labels=["fork", "plate", "lampp"])
+    (extra,) = deixis.check(script, scene).table.extra
+    assert extra.reason.endswith("for a lampp; did you mean 'lamp'?")
