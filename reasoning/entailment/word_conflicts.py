@@ -49,7 +49,8 @@ def conflicting_edges(graph: RelationGraph, firm: NDArray[np.int64]) -> tuple[in
     stated = graded[positive & (np.bitwise_count(graph.relation_sets[graded]) == 1)]
     denied = graded[~positive]
     found = [*_cycles(graph, words, stated), *_denials(graph, words, stated, denied)]
-    return min(found, key=len, default=None)
+    smallest = min(found, key=len, default=None)
+    return None if smallest is None else tuple(sorted(smallest))
 
 
 def _cycles(graph: RelationGraph, words: tuple[Relation, ...], stated: NDArray[np.int64]) -> Iterator[tuple[int, ...]]:

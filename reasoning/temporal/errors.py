@@ -18,7 +18,7 @@ class UnknownFluentError(UnknownTermError):
     """An unknown fluent or time point; the message suggests the nearest known one."""
 
     def __init__(self, kind: str, name: str, names: Iterable[str]) -> None:
-        near = nearest(name, names)
+        near = nearest(name, names) or next((known for known in names if name.startswith(f"{known}.")), None)
         super().__init__(f"there is no {kind} '{name}'" + (f"; did you mean '{near}'?" if near else ""))
 
 

@@ -75,6 +75,11 @@ TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct|open)\w*\s+(?:\w+
 """Directions that are denied: *pointing away from the plate*."""
 
 
+_MATTER = re.compile(
+    r"\bthing\s+(?:to|about|with|is\s+(?:that|to)|(?:you|we|i|one)\s+(?:can|could|must|should))\b", re.I
+)
+"""A thing that is done or said, and not one with a place: *the thing to do is …*."""
+
 _STOREY = re.compile(r"\b(?:top|bottom|upper|lower|middle|first|second|third|highest|lowest|next)\b", re.IGNORECASE)
 """Words by which a level is a storey of a thing, and not a height: *the top level of the altar*."""
 
@@ -185,7 +190,7 @@ class Drafting:
         """Return True for an object whose name says that it is a quality, an act, a time, or a piece of a clause."""
         storey = entity.noun == "level" and any(d in ("position", "rank") for d, _ in entity.adjectives)
         storey = storey or (entity.noun == "level" and any(_STOREY.search(mention) for mention in entity.mentions))
-        matter = entity.noun == "thing" and not entity.plural and entity.group is None  # 'the thing to do is …'
+        matter = entity.noun == "thing" and _MATTER.search(self.text, self.references.start, self.end) is not None
         unnamed = matter or not can_have_a_place(entity.noun, self.nouns)
         return entity.role is Role.THING and not storey and unnamed
 

@@ -79,21 +79,54 @@ class ListedNeighbours:
     table: NDArray[np.int32]
 
     def averaged(self, values: NDArray[np.float64], apart: NDArray[np.float64], rounds: int) -> NDArray[np.float64]:
-        """Return values averaged repeatedly with those of similar neighbours; see :class:`Neighbours`."""
+        """Return values averaged repeatedly with those of similar neighbours.
+
+        Parameters
+        ----------
+        values, apart, rounds
+            Values, largest differences and number of rounds, as for :class:`Neighbours`.
+
+        Returns
+        -------
+        ndarray
+            Values of shape (n,).
+        """
         from deixis.perception.detection.kernels import averaged
 
         result: NDArray[np.float64] = averaged(values, self.table, apart, rounds)
         return result
 
     def grown(self, seeds: NDArray[np.bool_], allowed: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return the allowed points that are connected to seeds; see :class:`Neighbours`."""
+        """Return a mask of the allowed points that are connected to seeds.
+
+        Parameters
+        ----------
+        seeds, allowed
+            Masks of shape (n,).
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (n,).
+        """
         from deixis.perception.detection.kernels import grown
 
         result: NDArray[np.bool_] = grown(seeds, allowed, self.table)
         return result
 
     def among(self, chosen: NDArray[np.intp]) -> NDArray[np.int32]:
-        """Return the neighbours of chosen points among these points; see :class:`Neighbours`."""
+        """Return the neighbours of chosen points among these points.
+
+        Parameters
+        ----------
+        chosen
+            Indices of m points, shape (m,).
+
+        Returns
+        -------
+        ndarray
+            Indices into ``chosen`` of shape (m, k); -1 for a missing neighbour.
+        """
         from deixis.perception.detection.kernels import renumbered
 
         number = np.full(len(self.table), -1, np.int32)
@@ -124,21 +157,54 @@ class AdjacentPixels:
     shape: tuple[int, int]
 
     def averaged(self, values: NDArray[np.float64], apart: NDArray[np.float64], rounds: int) -> NDArray[np.float64]:
-        """Return values averaged repeatedly with those of similar neighbours; see :class:`Neighbours`."""
+        """Return values averaged repeatedly with those of similar neighbours.
+
+        Parameters
+        ----------
+        values, apart, rounds
+            Values, largest differences and number of rounds, as for :class:`Neighbours`.
+
+        Returns
+        -------
+        ndarray
+            Values of shape (n,).
+        """
         from deixis.perception.detection.kernels import averaged_pixels
 
         result: NDArray[np.float64] = averaged_pixels(values, self.rows, self.columns, self.shape, apart, rounds)
         return result
 
     def grown(self, seeds: NDArray[np.bool_], allowed: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return the allowed points that are connected to seeds; see :class:`Neighbours`."""
+        """Return a mask of the allowed points that are connected to seeds.
+
+        Parameters
+        ----------
+        seeds, allowed
+            Masks of shape (n,).
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (n,).
+        """
         from deixis.perception.detection.kernels import grown_pixels
 
         result: NDArray[np.bool_] = grown_pixels(seeds, allowed, self.rows, self.columns, self.shape)
         return result
 
     def among(self, chosen: NDArray[np.intp]) -> NDArray[np.int32]:
-        """Return the neighbours of chosen points among these points; see :class:`Neighbours`."""
+        """Return the neighbours of chosen points among these points.
+
+        Parameters
+        ----------
+        chosen
+            Indices of m points, shape (m,).
+
+        Returns
+        -------
+        ndarray
+            Indices into ``chosen`` of shape (m, k); -1 for a missing neighbour.
+        """
         return self._around(chosen, self.places[chosen])
 
     def has_enough(self, settings: SurfaceSettings) -> bool:
