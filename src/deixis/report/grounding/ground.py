@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from deixis.answers import share
@@ -40,8 +41,6 @@ def grounding_lines(found: Grounding) -> list[str]:
     list of str
         A line for each match and each finding; doubtful and violated ones carry a mark.
     """
-    from deixis.reasoning.grounding.answers.answer import Outcome
-
     objects = found.object_matches
     lines = [line for match in objects.values() if match.object not in found.members for line in match_lines(match)]
     lines += [line for name, members in found.members.items() for line in member_lines(name, members)]
@@ -66,14 +65,7 @@ def grounding_lines(found: Grounding) -> list[str]:
     if groups:
         lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
         lines += ["    " + ", ".join(group) for group in groups]
-    counts = {outcome: len(found.of(outcome)) for outcome in (Outcome.VIOLATED, Outcome.WAIVED, Outcome.OPEN)}
-    words = {
-        Outcome.VIOLATED: "violated",
-        Outcome.WAIVED: "optional and not satisfied",
-        Outcome.OPEN: "about something left out",
-    }
-    rest = "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
-    lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + rest]
+    lines += ["", _counts_line("Facts", [entry.outcome for entry in found.outcomes])]
     lines += [violation(f"    violated: {violation_text(entry)}") for entry in found.violated]
     lines += claim_lines(found.claims)
     own = [one for one in found.frames if one.frame in FRAMES]
@@ -108,24 +100,29 @@ def claim_lines(claims: Sequence[ClaimOutcome]) -> list[str]:
 
     if not claims:
         return []
-    words = {
-        ClaimVerdict.SATISFIED: "satisfied",
-        ClaimVerdict.VIOLATED: "violated",
-        ClaimVerdict.WAIVED: "optional and not satisfied",
-        ClaimVerdict.OPEN: "about something left out",
-        ClaimVerdict.UNDECIDABLE: "undecidable",
-    }
-    listed: dict[ClaimVerdict, list[ClaimOutcome]] = {
-        verdict: [entry for entry in claims if entry.verdict is verdict] for verdict in words
-    }
-    counts = [
-        f"{len(entries)} {words[verdict]}"
-        for verdict, entries in listed.items()
-        if entries or verdict is ClaimVerdict.SATISFIED
-    ]
-    lines = [f"Claims: {len(claims)} stated, {', '.join(counts)}"]
-    lines += [violation(f"    violated: {claim_text(entry)}") for entry in listed[ClaimVerdict.VIOLATED]]
-    return lines + [doubt(f"    undecidable: {claim_text(entry)}") for entry in listed[ClaimVerdict.UNDECIDABLE]]
+    lines = [_counts_line("Claims", [entry.verdict for entry in claims])]
+    violated, undecidable = (
+        [claim_text(entry) for entry in claims if entry.verdict is verdict]
+        for verdict in (ClaimVerdict.VIOLATED, ClaimVerdict.UNDECIDABLE)
+    )
+    lines += [violation(f"    violated: {text}") for text in violated]
+    return lines + [doubt(f"    undecidable: {text}") for text in undecidable]
+
+
+NOT_SATISFIED = {
+    "violated": "violated",
+    "waived": "optional and not satisfied",
+    "open": "about something left out",
+    "undecidable": "undecidable",
+}
+"""Wording of the outcomes of facts and claims that are not satisfied."""
+
+
+def _counts_line(what: str, outcomes: Sequence[str]) -> str:
+    """Return how many facts or claims are stated, and how many have each outcome."""
+    counts = Counter(outcomes)
+    rest = [f"{counts[outcome]} {words}" for outcome, words in NOT_SATISFIED.items() if counts[outcome]]
+    return ", ".join([f"{what}: {len(outcomes)} stated", f"{counts['satisfied']} satisfied", *rest])
 
 
 def left_out_lines(left_out: Sequence[LeftOut]) -> list[str]:

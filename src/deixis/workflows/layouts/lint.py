@@ -242,9 +242,11 @@ def _number_findings(script: Script) -> Iterator[Finding]:
                 yield Finding("N004", mention.source, message, f"write the singular: {mention.count} {one}")
             for name in (mention.name, *mention.names):
                 first.setdefault(name, mention)
-    objects = set(script.objects)
+    objects, by_noun = set(script.objects), defaultdict[str, list[str]](list)
     for name in script.objects:
-        numbered = [other for other in script.objects if other != name and plain_name(other) == name]
+        by_noun[plain_name(name)].append(name)
+    for name in script.objects:
+        numbered = [other for other in by_noun.get(name, ()) if other != name]
         if numbered:
             message = f"'{name}' is another object than {_shown(numbered)}"
             yield Finding("N005", first[name].source, message, "give it a number too, or use one of their names")
